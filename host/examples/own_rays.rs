@@ -11,16 +11,16 @@ use eyerays::method::{Layout, Method};
 use eyerays::quality::Bvh;
 use eyerays::scene_io;
 use eyerays::stream::Question;
-use glam::Vec3;
+use glam::DVec3;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene_io::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
     let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
 
     // From the middle of the room through the cells of a cube around it.
-    let (edge, middle) = (22, Vec3::new(0.0, 1.0, 0.0));
-    let cell = |i: u32| Vec3::new((i % edge) as f32, (i / edge % edge) as f32, (i / edge / edge) as f32);
-    let ray = |i: u32| Ray::new(middle, cell(i) - Vec3::splat((edge - 1) as f32 / 2.0));
+    let (edge, middle) = (22, DVec3::new(0.0, 1.0, 0.0));
+    let cell = |i: u32| DVec3::new((i % edge).into(), (i / edge % edge).into(), (i / edge / edge).into());
+    let ray = |i: u32| Ray::new(middle, cell(i) - DVec3::splat(f64::from(edge - 1) / 2.0));
     let count = edge * edge * edge;
     let rays: Vec<Ray> = (0..count).map(ray).collect();
     let batch = Batch::new(&packed, &rays);

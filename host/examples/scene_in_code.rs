@@ -50,23 +50,16 @@ fn scene() -> Scene {
     let mirror = Material { name: "mirror".to_owned(), reflection: Vec3::splat(0.7), ..plain.clone() };
     let floor = [(-2.0, 0.0, 2.0), (2.0, 0.0, 2.0), (2.0, 0.0, -2.0), (-2.0, 0.0, -2.0)];
     let stands = [(-1.0, 0.0, -1.0), (1.0, 0.0, -1.0), (1.0, 1.5, -1.0), (-1.0, 1.5, -1.0)];
+    let mesh = Mesh {
+        positions: [floor, stands].concat().into_iter().map(Vec3::from).collect(),
+        // None at all: every triangle is flat.
+        normals: Vec::new(),
+        triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+        materials: vec![0, 0, 1, 1],
+        ..Mesh::default()
+    };
     Scene {
-        mesh: Mesh {
-            positions: [floor, stands].concat().into_iter().map(Vec3::from).collect(),
-            // None at all: every triangle is flat.
-            normals: Vec::new(),
-            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
-            materials: vec![0, 0, 1, 1],
-            ..Mesh::default()
-        },
-        spheres: Vec::new(),
-        disks: Vec::new(),
-        shared: Vec::new(),
-        instances: Vec::new(),
-        objects: Vec::new(),
-        animations: Vec::new(),
-        files: Vec::new(),
-        materials: vec![plain, mirror],
+        materials: vec![plain.clone(), mirror],
         lights: vec![Light::Point {
             position: vec3(1.5, 3.0, 2.0),
             colour: Vec3::ONE,
@@ -80,12 +73,8 @@ fn scene() -> Scene {
             Projection::Perspective { fov: 50.0 },
         )],
         background: Background::Colour(vec3(0.2, 0.3, 0.5)),
-        background_group: String::new(),
         ambient: Vec3::ONE,
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
-        motion: None,
-        hierarchy: None,
-        fog: None,
-        environment: None,
+        ..Scene::of_mesh(mesh, plain)
     }
 }

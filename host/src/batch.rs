@@ -3,6 +3,7 @@
 use eyerays_shader::ray;
 use eyerays_shader::real::V3;
 use glam::{DVec3, UVec4, Vec3};
+use rayon::prelude::*;
 
 use crate::job::Job;
 use crate::stream::{Answers, Stream, StreamRay};
@@ -10,12 +11,12 @@ use crate::stream::{Answers, Stream, StreamRay};
 /// A ray in the scene's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where it starts, anywhere.
-    pub origin: Vec3,
+    /// Where it starts, anywhere. Kernels take it rounded to single precision once, in the normalised scene.
+    pub origin: DVec3,
     /// Where it goes, of any length but zero.
-    pub direction: Vec3,
+    pub direction: DVec3,
     /// How far it goes, in the scene's units; [`Ray::ENDLESS`] for one without an end.
-    pub length: f32,
+    pub length: f64,
 }
 
 /// What a ray meets first.
@@ -54,10 +55,10 @@ pub struct Batch {
 
 impl Ray {
     /// The length of a ray without an end.
-    pub const ENDLESS: f32 = f32::INFINITY;
+    pub const ENDLESS: f64 = f64::INFINITY;
 
     /// From a place in a direction, without an end.
-    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Ray { origin, direction, length: Ray::ENDLESS }
     }
 }
@@ -65,9 +66,14 @@ impl Ray {
 impl Batch {
     /// Rays through a scene. One that starts so far away that its place can't be told, or goes nowhere, meets nothing.
     pub fn new(packed: &Job, rays: &[Ray]) -> Self {
+        Batch::of(packed, rays.len(), |i| rays[i])
+    }
+
+    /// The same of rays that are made as they are needed, by many threads.
+    pub fn of(packed: &Job, count: usize, ray: impl Fn(usize) -> Ray + Sync) -> Self {
         let scale = packed.normalisation().scale;
-        let placed: Vec<(StreamRay, f64)> = rays.iter().map(|ray| placed(packed, ray)).collect();
-        let (stream, moved): (Vec<StreamRay>, Vec<f64>) = placed.into_iter().unzip();
+        let placed = (0..count).into_par_iter().map(|i| placed(packed, &ray(i)));
+        let (stream, moved): (Vec<StreamRay>, Vec<f64>) = placed.unzip();
         Batch { stream: Stream::new(stream.into_iter()), moved, scale }
     }
 
@@ -78,31 +84,36 @@ impl Batch {
 
     /// What each ray met, from a device's answers to [`crate::stream::Question::Closest`]; nothing from other answers.
     pub fn hits(&self, packed: &Job, answers: &Answers) -> Vec<Option<Hit>> {
-        match answers {
-            Answers::Closest(records) => {
-                let copies = records.get(self.moved.len()..).unwrap_or_default();
-                let hit = |(ray, &moved): (usize, &f64)| self.hit(packed, (records[ray], copies.get(ray)), moved);
-                self.moved.iter().enumerate().map(hit).collect()
-            }
-            Answers::Occlusion(_) => vec![None; self.moved.len()],
-        }
+        (0..self.moved.len()).map(|ray| self.hit(packed, answers, ray)).collect()
     }
 
-    fn hit(&self, packed: &Job, (record, copy): (UVec4, Option<&UVec4>), moved: f64) -> Option<Hit> {
+    /// What a ray met.
+    pub fn hit(&self, packed: &Job, answers: &Answers, ray: usize) -> Option<Hit> {
+        let (record, copy) = self.record(answers, ray)?;
         let number = packed.primitives().get(record.w as usize)?.number();
-        let copy = copy.and_then(|copy| packed.instances().get(copy.w as usize));
+        let copy = packed.instances().get(copy as usize);
         let primitive = copy.map_or(number, |copy| copy.number(number));
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
-        Some(Hit { distance: moved + f64::from(t) / self.scale, primitive, coordinates: [u, v] })
+        let distance = self.moved[ray] + f64::from(t) / self.scale;
+        Some(Hit { distance, primitive, coordinates: [u, v] })
+    }
+
+    /// A ray's answer as a device gives it, and the copy of a mesh that it is in.
+    pub(crate) fn record(&self, answers: &Answers, ray: usize) -> Option<(UVec4, u32)> {
+        let Answers::Closest(records) = answers else { return None };
+        let copy = records.get(self.moved.len() + ray).map_or(StreamRay::NOWHERE, |record| record.w);
+        Some((*records.get(ray)?, copy))
     }
 }
 
 /// A ray in the normalised scene, and how far it was moved along itself, in the scene's units.
 fn placed(packed: &Job, ray: &Ray) -> (StreamRay, f64) {
     let normalisation = packed.normalisation();
-    let direction = ray.direction.as_dvec3().normalize_or_zero().as_vec3();
-    let (origin, length) = match normalisation.place_anywhere(ray.origin) {
-        Some(origin) if direction != Vec3::ZERO && !ray.length.is_nan() => (origin, f64::from(ray.length)),
+    // Scaled first, so that no square overflows or is lost; by zero that is NaN, which becomes zero.
+    let size = ray.direction.abs().max_element();
+    let direction = (ray.direction / size).normalize_or_zero().as_vec3();
+    let (origin, length) = match normalisation.place_exactly(ray.origin) {
+        Some(origin) if direction != Vec3::ZERO && !ray.length.is_nan() => (origin, ray.length),
         _ => (Vec3::ZERO, -1.0),
     };
     let vector = |v: Vec3| V3::<f32>::splat(v);
@@ -131,19 +142,19 @@ mod tests {
         let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let bottom = scene.mesh.positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let corner = scene.mesh.positions.iter().copied().reduce(Vec3::min).unwrap() + Vec3::new(0.25, 0.0, 0.25);
-        let up = |height: f32| Vec3::new(corner.x, bottom + height, corner.z);
-        let mut rays: Vec<Ray> = [0.5, 3.0, 1e3, 1e6].map(|height| Ray::new(up(height), -2.0 * Vec3::Y)).into();
+        let up = |height: f64| DVec3::new(corner.x.into(), f64::from(bottom) + height, corner.z.into());
+        let mut rays: Vec<Ray> = [0.5, 3.0, 1e3, 1e6].map(|height| Ray::new(up(height), -2.0 * DVec3::Y)).into();
         rays.push(Ray { length: 900.0, ..rays[2] });
         rays.push(Ray { length: 1100.0, ..rays[2] });
-        rays.push(Ray::new(up(1e3), Vec3::Y));
-        rays.push(Ray::new(up(1e3), Vec3::ZERO));
-        rays.push(Ray::new(Vec3::splat(f32::NAN), Vec3::Y));
-        rays.push(Ray { length: f32::NAN, ..rays[2] });
+        rays.push(Ray::new(up(1e3), DVec3::Y));
+        rays.push(Ray::new(up(1e3), DVec3::ZERO));
+        rays.push(Ray::new(DVec3::splat(f64::NAN), DVec3::Y));
+        rays.push(Ray { length: f64::NAN, ..rays[2] });
         let batch = Batch::new(&packed, &rays);
         let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
         let hits = batch.hits(&packed, &answers);
         for (hit, ray) in hits[..4].iter().zip(&rays) {
-            let (hit, height) = (hit.expect("the floor is below"), f64::from(ray.origin.y - bottom));
+            let (hit, height) = (hit.expect("the floor is below"), ray.origin.y - f64::from(bottom));
             assert!((hit.distance - height).abs() <= 1e-6 * height, "{height}: {hit:?}");
             assert!(
                 scene.mesh.triangles[hit.primitive as usize]

@@ -55,6 +55,7 @@ pub mod pick;
 pub mod picture;
 pub mod plan;
 pub mod quality;
+pub mod queries;
 pub mod rays;
 pub mod render;
 pub mod scene;

@@ -92,7 +92,7 @@ impl Machine {
 pub struct Tracer<'a> {
     machine: Machine,
     packed: &'a Job,
-    caster: Option<Caster<'a>>,
+    caster: Option<Caster>,
 }
 
 impl Tracer<'_> {

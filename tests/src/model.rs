@@ -1,30 +1,15 @@
 //! Scenes made by code, so that a test knows every number in them.
 
-use eyerays::scene::{Background, Camera, Light, Material, Mesh, Projection, Scene, Settings};
+use eyerays::scene::{Camera, Light, Material, Mesh, Projection, Scene, Settings};
 use glam::{Vec3, Vec4};
 
 /// A scene without surfaces or lights before black, seen from the origin along -z, a pixel large.
 pub fn empty() -> Scene {
     Scene {
-        mesh: Mesh::default(),
-        spheres: Vec::new(),
-        disks: Vec::new(),
-        shared: Vec::new(),
-        instances: Vec::new(),
-        objects: Vec::new(),
-        animations: Vec::new(),
-        files: Vec::new(),
         materials: Vec::new(),
-        lights: Vec::new(),
         cameras: vec![Camera::new("front", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 1.0 })],
-        background: Background::Colour(Vec3::ZERO),
-        background_group: String::new(),
-        ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
-        motion: None,
-        hierarchy: None,
-        fog: None,
-        environment: None,
+        ..Scene::of_mesh(Mesh::default(), black())
     }
 }
 

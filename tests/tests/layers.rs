@@ -82,7 +82,7 @@ fn rays(scene: &Scene) -> Vec<(Ray, f64)> {
         let across = (f64::from(2 * x + 1) - width) / height * half;
         let down = (f64::from(2 * y + 1) / height - 1.0) * half;
         let direction = forward + right * across - up * down;
-        (Ray::new(camera.eye, direction.as_vec3()), 1.0 / direction.length())
+        (Ray::new(camera.eye.as_dvec3(), direction), 1.0 / direction.length())
     };
     (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| place(x, y))).collect()
 }
@@ -114,7 +114,7 @@ fn positions_are_where_rays_meet_things_and_coordinates_go_with_them() {
             assert_eq!((positions.pixels[i], uv.pixels[i]), ([place as f32; 3], [0.0; 3]));
             continue;
         }
-        let at = ray.origin.as_dvec3() + ray.direction.as_dvec3().normalize() * (depth / forward);
+        let at = ray.origin + ray.direction.normalize() * (depth / forward);
         let seen = Vec3::from(positions.pixels[i]);
         assert!((at - seen.as_dvec3()).length() < 1e-4 * at.length().max(1.0), "pixel {i}: {seen} is not {at}");
         met += 1;

@@ -46,17 +46,28 @@ pub fn cast_by(
     stream: &Stream,
     question: Question,
 ) -> Result<(Answers, Duration)> {
+    Ok(pool(threads)?.install(|| cast_here(isa, packed, traversal, stream, question)))
+}
+
+/// [`cast_by`] with the threads that it is called in.
+pub(crate) fn cast_here(
+    isa: Isa,
+    packed: &Job,
+    traversal: Traversal,
+    stream: &Stream,
+    question: Question,
+) -> (Answers, Duration) {
     let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
     let asking = ShadowInputs { lights: &[], paths: stream.words(), hits: &[] };
-    pool(threads)?.install(|| match question {
+    match question {
         Question::Closest => {
             let mut hits = vec![Found::nothing(); stream.len()];
             let start = Instant::now();
             trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), &mut hits);
             let time = start.elapsed();
-            Ok((Answers::Closest(records::<f32>(&geometry, &hits)), time))
+            (Answers::Closest(records::<f32>(&geometry, &hits)), time)
         }
         Question::Occlusion => {
             let mut shadows = vec![0; stream.len()];
@@ -64,9 +75,9 @@ pub fn cast_by(
             tasks(&slots, &mut shadows, |slots, shadows| {
                 f32::follow(isa, traversal.method.way(), &geometry, slots, Query::Shadow(asking, 0, shadows));
             });
-            Ok((Answers::Occlusion(shadows), start.elapsed()))
+            (Answers::Occlusion(shadows), start.elapsed())
         }
-    })
+    }
 }
 
 /// The closest hits of a stream's rays in the arithmetic `R`, as [`cast`] finds them in exact precision: (t, u,

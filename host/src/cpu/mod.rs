@@ -11,6 +11,7 @@ mod watched;
 
 pub use eyerays_kernels_cpu::{Isa, Number, Records};
 
+pub(crate) use cast::cast_here;
 pub use cast::{cast, cast_by, closest};
 pub(crate) use enclosing::enclosing;
 pub use pool::pool;

@@ -1,8 +1,7 @@
 //! Streams of rays on the GPU: one dispatch each, timed by itself.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use eyerays_shader::data::{Launch, Media, Specialisation};
@@ -34,12 +33,12 @@ const BATCH: u32 = 8;
 const LEAST_WARMING: Duration = Duration::from_millis(100);
 
 /// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
-pub struct Caster<'a> {
-    gpu: &'a Gpu,
-    packed: &'a Job,
+pub struct Caster {
+    gpu: Gpu,
+    packed: Job,
     layout: Layout,
     scene: SceneBuffers,
-    kernels: RefCell<HashMap<Key, Rc<Kernel>>>,
+    kernels: Mutex<HashMap<Key, Arc<Kernel>>>,
     timer: Option<Timer>,
 }
 
@@ -49,15 +48,16 @@ pub struct Cast {
     count: u32,
 }
 
-impl<'a> Caster<'a> {
+impl Caster {
     /// Uploads a scene with all hierarchies that it has and its triangles in a layout.
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Job, layout: Layout) -> Result<Self> {
+    pub fn new(gpu: &Gpu, packed: &Job, layout: Layout) -> Result<Self> {
         let scene =
             SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: !packed.wide().is_empty() })?;
-        Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
+        let timer = Timer::new(gpu, BATCH);
+        Ok(Caster { gpu: gpu.clone(), packed: packed.clone(), layout, scene, kernels: Mutex::default(), timer })
     }
 
     /// Records of a hit.
@@ -82,7 +82,7 @@ impl<'a> Caster<'a> {
         }
         // Of a ray and of either answer.
         let bytes = [(binding::PATHS, 32), (binding::HITS, 16 * self.rows()), (binding::SHADOWS, 4)];
-        let buffers = LaunchBuffers::new(self.gpu, &bytes, count as u32)?;
+        let buffers = LaunchBuffers::new(&self.gpu, &bytes, count as u32)?;
         let frame = self.packed.stream_frame(stream.len());
         self.gpu.queue.write_buffer(buffers.of(binding::FRAME), 0, bytemuck::bytes_of(&frame));
         self.gpu.queue.write_buffer(buffers.of(binding::PATHS), 0, bytemuck::cast_slice(stream.words()));
@@ -124,7 +124,7 @@ impl<'a> Caster<'a> {
 
     /// Dispatches one after the other in a submission, and what each took.
     fn batch(&self, cast: &Cast, kernel: &Kernel, count: u32) -> Result<Vec<Duration>> {
-        let group = kernel.group(self.gpu, |own| self.scene.find(own).or_else(|| cast.buffers.find(own, false)));
+        let group = kernel.group(&self.gpu, |own| self.scene.find(own).or_else(|| cast.buffers.find(own, false)));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         for pass in 0..count {
             encoder.clear_buffer(cast.buffers.of(binding::COUNTERS), 0, None);
@@ -137,7 +137,7 @@ impl<'a> Caster<'a> {
         }
         self.gpu.queue.submit([encoder.finish()]);
         match &self.timer {
-            Some(timer) => timer.read(self.gpu, count),
+            Some(timer) => timer.read(&self.gpu, count),
             None => self.gpu.wait().map(|()| vec![Duration::ZERO; count as usize]),
         }
     }
@@ -150,22 +150,27 @@ impl<'a> Caster<'a> {
         let count = u64::from(cast.count);
         Ok(match question {
             Question::Closest => {
-                let bytes = readback::read(self.gpu, cast.buffers.of(binding::HITS), 16 * count * self.rows())?;
+                let bytes = readback::read(&self.gpu, cast.buffers.of(binding::HITS), 16 * count * self.rows())?;
                 let words: Vec<u32> = readback::words(&bytes).collect();
                 Answers::Closest(words.chunks_exact(4).map(UVec4::from_slice).collect())
             }
             Question::Occlusion => {
-                let bytes = readback::read(self.gpu, cast.buffers.of(binding::SHADOWS), 4 * count)?;
+                let bytes = readback::read(&self.gpu, cast.buffers.of(binding::SHADOWS), 4 * count)?;
                 Answers::Occlusion(readback::words(&bytes).collect())
             }
         })
     }
 
+    fn known(&self) -> MutexGuard<'_, HashMap<Key, Arc<Kernel>>> {
+        // A kernel is there or it is not, whatever else failed.
+        self.kernels.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// The kernel for rays as they come: `auto` is resolved by the caller, who knows what they are.
-    fn kernel(&self, exact: bool, traversal: Traversal, question: Question) -> Result<Rc<Kernel>> {
+    fn kernel(&self, exact: bool, traversal: Traversal, question: Question) -> Result<Arc<Kernel>> {
         let traversal = Traversal { layout: self.layout, ..traversal };
         let key = (exact, traversal, question);
-        if let Some(kernel) = self.kernels.borrow().get(&key) {
+        if let Some(kernel) = self.known().get(&key) {
             return Ok(kernel.clone());
         }
         let stage = match question {
@@ -178,10 +183,10 @@ impl<'a> Caster<'a> {
         let spec = Specialisation { media: Media::default(), ..own }.with_launch(Launch::STREAM);
         let step = Step { stage, traversal: Some(traversal), spec };
         let recipe = Recipe::new(step, self.gpu.target(exact));
-        let kernel = Known::default().compile(self.gpu, vec![recipe]).pop().map(Rc::new);
+        let kernel = Known::default().compile(&self.gpu, vec![recipe]).pop().map(Arc::new);
         self.gpu.check()?;
         let kernel = kernel.expect("a kernel for a recipe");
-        self.kernels.borrow_mut().insert(key, kernel.clone());
+        self.known().insert(key, kernel.clone());
         Ok(kernel)
     }
 }

@@ -134,6 +134,31 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A mesh in the dark: one material, no lamps, no camera, a black background and no object that has a name.
+    pub fn of_mesh(mesh: Mesh, material: Material) -> Scene {
+        Scene {
+            mesh,
+            shared: Vec::new(),
+            instances: Vec::new(),
+            spheres: Vec::new(),
+            disks: Vec::new(),
+            objects: Vec::new(),
+            animations: Vec::new(),
+            files: Vec::new(),
+            materials: vec![material],
+            lights: Vec::new(),
+            cameras: Vec::new(),
+            background: Background::Colour(Vec3::ZERO),
+            environment: None,
+            background_group: String::new(),
+            fog: None,
+            ambient: Vec3::ZERO,
+            settings: Settings::default(),
+            motion: None,
+            hierarchy: None,
+        }
+    }
+
     /// How many triangles, spheres and disks are seen: those of copies as often as they are copied.
     pub fn primitives(&self) -> u64 {
         (self.own_triangles() + self.spheres.len() + self.disks.len()) as u64 + self.copied_triangles()

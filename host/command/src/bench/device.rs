@@ -22,7 +22,7 @@ pub(super) struct Run {
 /// A scene on a GPU, in each layout that is measured.
 pub(crate) struct OnGpu<'a> {
     gpu: &'a Gpu,
-    casters: Vec<(Layout, Caster<'a>)>,
+    casters: Vec<(Layout, Caster)>,
 }
 
 /// A stream on a GPU, in parts if its buffers are too small for all of it.
@@ -38,7 +38,7 @@ impl<'a> OnGpu<'a> {
         let bytes = self.gpu.report.max_binding.min(self.gpu.report.max_buffer);
         // A ray takes 32 bytes of a buffer.
         let most = (usize::try_from(bytes / 32).unwrap_or(usize::MAX) / SUBGROUP * SUBGROUP).max(SUBGROUP);
-        let parts = |caster: &Caster<'_>| -> Result<Vec<Cast>> {
+        let parts = |caster: &Caster| -> Result<Vec<Cast>> {
             if stream.len() <= most {
                 return Ok(vec![caster.upload(stream)?]);
             }
@@ -67,7 +67,7 @@ impl<'a> OnGpu<'a> {
     }
 
     /// What holds the scene and a stream in a layout.
-    fn laid<'b>(&'b self, on: &'b Uploaded, layout: Layout) -> Result<(&'b Caster<'a>, &'b [Cast])> {
+    fn laid<'b>(&'b self, on: &'b Uploaded, layout: Layout) -> Result<(&'b Caster, &'b [Cast])> {
         let caster = self.casters.iter().find(|(of, _)| *of == layout).map(|(_, caster)| caster);
         let casts = on.0.iter().find(|(of, _)| *of == layout).map(|(_, casts)| casts.as_slice());
         caster.zip(casts).ok_or_else(|| Error::new("a layout is not on the GPU"))
@@ -76,7 +76,7 @@ impl<'a> OnGpu<'a> {
     /// Device times of dispatches; without a clock, wall-clock time around each.
     fn times(
         &self,
-        caster: &Caster<'_>,
+        caster: &Caster,
         cast: &Cast,
         (exact, how, ask): (bool, Traversal, Question),
         repeat: u32,
@@ -97,7 +97,7 @@ impl<'a> OnGpu<'a> {
 }
 
 /// The last answers to all parts of a stream.
-fn answers(caster: &Caster<'_>, casts: &[Cast], ask: Question) -> Result<Answers> {
+fn answers(caster: &Caster, casts: &[Cast], ask: Question) -> Result<Answers> {
     Ok(joined(casts.iter().map(|cast| Ok(caster.answers(cast, ask)?)).collect::<Result<Vec<_>>>()?))
 }
 

@@ -1,0 +1,65 @@
+"""Arrays as callers have them, and as Rust takes them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+def floats(name: str, values: ArrayLike) -> NDArray:
+    """An array of float32 or float64: itself if it is one, whatever its strides."""
+    array = np.asarray(values)
+    if array.dtype not in (np.float32, np.float64):
+        if array.dtype.kind not in "iufb":
+            raise TypeError(f"{name} holds {array.dtype}, not numbers")
+        array = array.astype(np.float32 if array.dtype == np.float16 else np.float64)
+    return array if array.flags.aligned else array.copy()
+
+
+def rows(name: str, values: ArrayLike) -> NDArray:
+    """An array of float32 or float64 whose last axis has three numbers."""
+    array = floats(name, values)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name} has the shape {array.shape}; its last axis must have three numbers")
+    return array
+
+
+def finite_rows(name: str, values: ArrayLike) -> NDArray:
+    """As `rows`, of two axes and without NaN or infinities."""
+    array = rows(name, values)
+    if array.ndim != 2:
+        raise ValueError(f"{name} has the shape {array.shape}, not (n, 3)")
+    bad = ~np.isfinite(array).all(axis=1)
+    if bad.any():
+        raise ValueError(f"{name}[{int(bad.argmax())}] is not finite")
+    return array
+
+
+def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
+    """Rows of three numbers of vertices, all of which there are."""
+    array = np.asarray(values)
+    if array.size == 0:
+        raise ValueError(f"{name} is empty; a mesh has a triangle at least")
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} holds {array.dtype}, not integers")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} has the shape {array.shape}, not (n, 3)")
+    least, greatest = int(array.min()), int(array.max())
+    if least < 0 or greatest >= vertices:
+        row = int(((array < 0) | (array >= vertices)).any(axis=1).argmax())
+        raise ValueError(f"{name}[{row}] is {array[row].tolist()}, but the vertices are 0 to {vertices - 1}")
+    return np.require(array, np.uint32, "A")
+
+
+def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Matrices of four rows and columns that move points, one or an axis of them."""
+    array = np.asarray(values, np.float64)
+    if array.ndim == 2:
+        array = array[None]
+    if array.ndim != 3 or array.shape[1:] != (4, 4):
+        raise ValueError(f"{name} has the shape {array.shape}, not (n, 4, 4)")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} is not finite")
+    if not (array[:, 3] == [0, 0, 0, 1]).all():
+        raise ValueError(f"{name} has a last row that is not 0, 0, 0, 1")
+    return array

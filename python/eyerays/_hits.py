@@ -1,0 +1,92 @@
+"""What rays have met."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Hits:
+    """What each ray meets first, in arrays of the rays' shape; those that were not asked for are None.
+
+    Where a ray meets nothing, `t` is infinite, `triangle` and `object` are -1, and all else is NaN.
+    """
+
+    t: NDArray[np.floating] | None = None
+    """How far, in lengths of the ray's direction: the ray is at `origin + t * direction`."""
+    triangle: NDArray[np.signedinteger] | None = None
+    """Which triangle of its object, by its row in `faces`."""
+    object: NDArray[np.signedinteger] | None = None
+    """Which object: what `add_mesh` returned, or one of what `add_instances` returned."""
+    uv: NDArray[np.float32] | None = None
+    """Where on the triangle, two numbers a ray: the weights of its second and third vertex."""
+    normal: NDArray[np.float32] | None = None
+    """The triangle's unit normal, on the side from where its vertices go counter-clockwise."""
+    point: NDArray[np.float64] | None = None
+    """Where in space, computed from the triangle and `uv`: nearer to the surface than a point along the ray."""
+    error: NDArray[np.float32] | None = None
+    """A bound of how far rounding has moved `point` off the triangle."""
+
+    @property
+    def hit(self) -> NDArray[np.bool_]:
+        """Which rays have met anything."""
+        if self.triangle is not None:
+            return self.triangle >= 0
+        if self.object is not None:
+            return self.object >= 0
+        if self.t is not None:
+            return np.isfinite(self.t)
+        raise ValueError("none of t, triangle and object was asked for, which tell of hits")
+
+
+NAMES = tuple(field.name for field in fields(Hits))
+"""The fields' names in their order."""
+
+SHAPES = {"t": (), "triangle": (), "object": (), "uv": (2,), "normal": (3,), "point": (3,), "error": ()}
+"""What an array has beside the rays' shape."""
+
+TYPES = {
+    "t": (np.float32, np.float64),
+    "triangle": (np.int32, np.int64),
+    "object": (np.int32, np.int64),
+    "uv": (np.float32,),
+    "normal": (np.float32,),
+    "point": (np.float64,),
+    "error": (np.float32,),
+}
+"""What an array may hold; the first is what is made."""
+
+
+def arrays(shape: tuple[int, ...], names, out) -> dict[str, NDArray]:
+    """The arrays to be filled: those of `out`, and new ones for what else is asked for."""
+    out = {} if out is None else dict(out)
+    names = tuple(out) or NAMES if names is None else ((names,) if isinstance(names, str) else tuple(names))
+    for name in (*names, *out):
+        if name not in SHAPES:
+            raise ValueError(f"a hit has no {name!r}; it has {', '.join(NAMES)}")
+    return {
+        name: _checked(name, out[name], shape) if name in out else np.empty(shape + SHAPES[name], TYPES[name][0])
+        for name in dict.fromkeys((*names, *out))
+    }
+
+
+def _checked(name: str, array, shape: tuple[int, ...]) -> NDArray:
+    wanted = shape + SHAPES[name]
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"out[{name!r}] is no numpy array")
+    if array.dtype not in TYPES[name]:
+        kinds = " or ".join(np.dtype(kind).name for kind in TYPES[name])
+        raise TypeError(f"out[{name!r}] holds {array.dtype}, not {kinds}")
+    if array.shape != wanted:
+        raise ValueError(f"out[{name!r}] has the shape {array.shape}, not {wanted}")
+    if not (array.flags.c_contiguous and array.flags.aligned and array.flags.writeable):
+        raise ValueError(f"out[{name!r}] has gaps or can't be written to; give an array of its own")
+    return array
+
+
+def native(given: dict[str, NDArray], count: int) -> dict[str, NDArray | None]:
+    """The arrays with a row a ray, as Rust takes them."""
+    return {name: given[name].reshape((count, *SHAPES[name])) if name in given else None for name in NAMES}

@@ -1,0 +1,111 @@
+//! Arrays that Python gives, as they lie in its memory.
+
+use glam::DVec3;
+use numpy::PyReadonlyArray1;
+use numpy::PyReadonlyArray2;
+use numpy::PyUntypedArrayMethods;
+use numpy::ndarray::{ArrayView1, ArrayView2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Rows of three numbers, of any strides.
+#[derive(FromPyObject)]
+pub enum Rows<'py> {
+    /// Of `float32`.
+    Single(PyReadonlyArray2<'py, f32>),
+    /// Of `float64`.
+    Double(PyReadonlyArray2<'py, f64>),
+}
+
+/// The same without Python.
+#[derive(Clone, Copy)]
+pub enum RowsView<'a> {
+    /// Of `f32`.
+    Single(ArrayView2<'a, f32>),
+    /// Of `f64`.
+    Double(ArrayView2<'a, f64>),
+}
+
+impl Rows<'_> {
+    /// What is in them.
+    ///
+    /// # Errors
+    /// Rows of another length.
+    pub fn view(&self, name: &str) -> PyResult<RowsView<'_>> {
+        let (shape, view) = match self {
+            Rows::Single(array) => (array.shape(), RowsView::Single(array.as_array())),
+            Rows::Double(array) => (array.shape(), RowsView::Double(array.as_array())),
+        };
+        if shape[1] != 3 {
+            return Err(PyValueError::new_err(format!("{name} has rows of {} numbers, not of three", shape[1])));
+        }
+        Ok(view)
+    }
+}
+
+impl RowsView<'_> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            RowsView::Single(rows) => rows.nrows(),
+            RowsView::Double(rows) => rows.nrows(),
+        }
+    }
+
+    /// Row `i`.
+    pub fn row(&self, i: usize) -> DVec3 {
+        match self {
+            RowsView::Single(rows) => DVec3::new(rows[[i, 0]].into(), rows[[i, 1]].into(), rows[[i, 2]].into()),
+            RowsView::Double(rows) => DVec3::new(rows[[i, 0]], rows[[i, 1]], rows[[i, 2]]),
+        }
+    }
+
+    /// All rows.
+    pub fn iter(&self) -> impl Iterator<Item = DVec3> + '_ {
+        (0..self.len()).map(|i| self.row(i))
+    }
+}
+
+/// A number for each ray, or one for all.
+#[derive(FromPyObject)]
+pub enum Numbers<'py> {
+    /// One for all.
+    One(f64),
+    /// One each.
+    Each(PyReadonlyArray1<'py, f64>),
+}
+
+/// The same without Python.
+#[derive(Clone, Copy)]
+pub enum NumbersView<'a> {
+    /// One for all.
+    One(f64),
+    /// One each.
+    Each(ArrayView1<'a, f64>),
+}
+
+impl Numbers<'_> {
+    /// What they are for so many rays.
+    ///
+    /// # Errors
+    /// Another number of them.
+    pub fn view(&self, name: &str, count: usize) -> PyResult<NumbersView<'_>> {
+        match self {
+            Numbers::One(number) => Ok(NumbersView::One(*number)),
+            Numbers::Each(array) if array.len() == count => Ok(NumbersView::Each(array.as_array())),
+            Numbers::Each(array) => {
+                Err(PyValueError::new_err(format!("{name} has {} numbers for {count} rays", array.len())))
+            }
+        }
+    }
+}
+
+impl NumbersView<'_> {
+    /// That of ray `i`.
+    pub fn of(&self, i: usize) -> f64 {
+        match self {
+            NumbersView::One(number) => *number,
+            NumbersView::Each(numbers) => numbers[i],
+        }
+    }
+}

@@ -112,17 +112,29 @@ fn placed(packed: &Job, ray: &Ray) -> (StreamRay, f64) {
     // Scaled first, so that no square overflows or is lost; by zero that is NaN, which becomes zero.
     let size = ray.direction.abs().max_element();
     let direction = (ray.direction / size).normalize_or_zero().as_vec3();
-    let (origin, length) = match normalisation.place_exactly(ray.origin) {
-        Some(origin) if direction != Vec3::ZERO && !ray.length.is_nan() => (origin, ray.length),
-        _ => (Vec3::ZERO, -1.0),
+    let Some(origin) = normalisation.place_exactly(ray.origin).filter(|_| direction != Vec3::ZERO) else {
+        return (AWAY, 0.0);
     };
     let vector = |v: Vec3| V3::<f32>::splat(v);
     let near = ray::Ray::from_afar(vector(origin), vector(direction)).origin;
     let near = Vec3::new(near.x, near.y, near.z);
     let moved = DVec3::distance(near.as_dvec3(), origin.as_dvec3()) / normalisation.scale;
-    let limit = ((length - moved) * normalisation.scale).clamp(-1.0, f64::from(f32::MAX)) as f32;
+    let limit = (ray.length - moved) * normalisation.scale;
+    // A limit below zero would say that something has been found.
+    if limit.is_nan() || limit < 0.0 {
+        return (AWAY, 0.0);
+    }
+    let limit = limit.min(f64::from(f32::MAX)) as f32;
     (StreamRay { origin: near, direction, limit, source_primitive: StreamRay::NOWHERE }, moved)
 }
+
+/// A ray that meets nothing: it starts beside the scene and goes away from it.
+const AWAY: StreamRay = StreamRay {
+    origin: Vec3::new(2.0, 0.0, 0.0),
+    direction: Vec3::X,
+    limit: 0.0,
+    source_primitive: StreamRay::NOWHERE,
+};
 
 #[cfg(test)]
 mod tests {
@@ -162,9 +174,10 @@ mod tests {
                     .all(|&v| scene.mesh.positions[v as usize].y == bottom)
             );
         }
-        assert_eq!(
-            hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(),
-            [false, true, false, false, false, false]
-        );
+        let met = [false, true, false, false, false, false];
+        assert_eq!(hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(), met);
+        let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Occlusion).unwrap();
+        let Answers::Occlusion(shadows) = answers else { panic!("other answers") };
+        assert_eq!(shadows[4..], met.map(u32::from), "what meets nothing is in no shadow");
     }
 }

@@ -43,7 +43,7 @@ fn anything_is_met_where_something_is_met_first() {
         let met: Vec<bool> = (0..RAYS).map(|i| hits.hit(i).is_some()).collect();
         assert!(met == any, "{name}");
         let count = met.iter().filter(|&&met| met).count();
-        assert!((RAYS / 50..RAYS).contains(&count), "{name}: {count}");
+        assert!((RAYS / 50..=RAYS).contains(&count), "{name}: {count}");
         // And nothing before what is met first, but for the last bits of single precision.
         let before = |i: usize| Ray { length: hits.hit(i).map_or(0.0, |hit| hit.distance * (1.0 - 1e-5)), ..rays[i] };
         let early = queries.any(RAYS, before).unwrap();

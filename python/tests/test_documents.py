@@ -1,0 +1,39 @@
+"""What documents show is what happens."""
+
+import doctest
+import importlib
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eyerays
+
+PAGE = Path(__file__).parents[2] / "docs" / "python.md"
+
+
+@pytest.mark.parametrize("name", ["eyerays", "eyerays._scene", "eyerays._hits", "eyerays._arrays"])
+def test_examples_of_docstrings(name):
+    result = doctest.testmod(importlib.import_module(name))
+    assert result.failed == 0
+    assert name != "eyerays" or result.attempted > 0
+
+
+def test_the_page_runs_and_tells_what_it_says():
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    assert blocks
+    names = {}
+    for block in blocks:
+        exec(block, names)
+    hits, scene = names["hits"], names["scene"]
+    assert hits.t.tolist() == [2.0] and hits.triangle.tolist() == [0]
+    assert hits.point.tolist() == [[0.5, -0.5, 0.0]]
+    assert not scene.any([0.5, -0.5, 2.0], [0.0, 0.0, 1.0])
+
+
+def test_all_that_is_public_has_a_docstring():
+    public = [getattr(eyerays, name) for name in eyerays.__all__]
+    members = [member for of in public if isinstance(of, type) for name, member in vars(of).items() if not name.startswith("_")]
+    for of in [*public, *members]:
+        assert isinstance(of, (np.ndarray, type(None))) or of.__doc__, of

@@ -47,11 +47,7 @@ const DUMMY: [Edit; 5] = [
     ),
     // Of both kernels that shade.
     ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
-    (
-        "src/entry/mod.rs",
-        "albedos light_nodes media grids finishes\n             spectra] {",
-        "albedos light_nodes media grids finishes\n             spectra dummy] {",
-    ),
+    ("src/entry/mod.rs", "spectra photons heads landed] {", "spectra photons heads landed dummy] {"),
     (
         "src/entry/mod.rs",
         "let shading = ShadingData { normals, materials, tangents, maps, textures };",

@@ -1,17 +1,17 @@
 //! Rays of one's own, in the scene's units, traced many at once.
 
-use eyerays_shader::ray;
-use eyerays_shader::real::V3;
+use eyerays_shader::real::TINY;
 use glam::{DVec3, UVec4, Vec3};
 use rayon::prelude::*;
 
+use crate::device_scene::flushed;
 use crate::job::Job;
 use crate::stream::{Answers, Stream, StreamRay};
 
 /// A ray in the scene's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where it starts, anywhere. Kernels take it rounded to single precision once, in the normalised scene.
+    /// Where it starts, anywhere. Kernels take it rounded to single precision once, in the normalised scene and there in its cube.
     pub origin: DVec3,
     /// Where it goes, of any length but zero.
     pub direction: DVec3,
@@ -64,7 +64,7 @@ impl Ray {
 }
 
 impl Batch {
-    /// Rays through a scene. One that starts so far away that its place can't be told, or goes nowhere, meets nothing.
+    /// Rays through a scene. One that goes nowhere, or from no place, meets nothing.
     pub fn new(packed: &Job, rays: &[Ray]) -> Self {
         Batch::of(packed, rays.len(), |i| rays[i])
     }
@@ -106,26 +106,41 @@ impl Batch {
     }
 }
 
-/// A ray in the normalised scene, and how far it was moved along itself, in the scene's units.
+/// A ray in the normalised scene, and how far it was moved along itself, in the scene's units: one from outside starts where it comes to
+/// the scene's cube, before anything is rounded.
 fn placed(packed: &Job, ray: &Ray) -> (StreamRay, f64) {
     let normalisation = packed.normalisation();
     // Scaled first, so that no square overflows or is lost; by zero that is NaN, which becomes zero.
     let size = ray.direction.abs().max_element();
-    let direction = (ray.direction / size).normalize_or_zero().as_vec3();
-    let Some(origin) = normalisation.place_exactly(ray.origin).filter(|_| direction != Vec3::ZERO) else {
-        return (AWAY, 0.0);
-    };
-    let vector = |v: Vec3| V3::<f32>::splat(v);
-    let near = ray::Ray::from_afar(vector(origin), vector(direction)).origin;
-    let near = Vec3::new(near.x, near.y, near.z);
-    let moved = DVec3::distance(near.as_dvec3(), origin.as_dvec3()) / normalisation.scale;
-    let limit = (ray.length - moved) * normalisation.scale;
-    // A limit below zero would say that something has been found.
-    if limit.is_nan() || limit < 0.0 {
+    let direction = (ray.direction / size).normalize_or_zero();
+    let origin = normalisation.exactly(ray.origin);
+    let (enters, leaves) = span(origin, direction);
+    let limit = ray.length * normalisation.scale - enters;
+    // A limit below zero would say that something has been found; and what is compared with NaN is not so.
+    if direction == DVec3::ZERO || !(leaves >= enters && limit >= 0.0) {
         return (AWAY, 0.0);
     }
-    let limit = limit.min(f64::from(f32::MAX)) as f32;
-    (StreamRay { origin: near, direction, limit, source_primitive: StreamRay::NOWHERE }, moved)
+    let origin = flushed((origin + direction * enters).as_vec3());
+    // What is at the end counts; and no limit is so small that a device takes it for zero.
+    let limit = (limit.min(f64::from(f32::MAX)) as f32).next_up().clamp(TINY, f32::MAX);
+    let source_primitive = StreamRay::NOWHERE;
+    (StreamRay { origin, direction: direction.as_vec3(), limit, source_primitive }, enters / normalisation.scale)
+}
+
+/// Where a ray enters the cube around a normalised scene, at least at its origin, and where it leaves it.
+fn span(origin: DVec3, direction: DVec3) -> (f64, f64) {
+    /// A little more than the scene's, so that nothing on its faces is passed.
+    const HALF: f64 = 1.0 + 1.0 / 64.0;
+    let ends = |axis: usize| {
+        let (from, along) = (origin[axis], direction[axis]);
+        match along == 0.0 {
+            true if from.abs() <= HALF => (f64::NEG_INFINITY, f64::INFINITY),
+            true => (f64::INFINITY, f64::NEG_INFINITY),
+            false => ((-HALF * along.signum() - from) / along, (HALF * along.signum() - from) / along),
+        }
+    };
+    let [x, y, z] = [0, 1, 2].map(ends);
+    (x.0.max(y.0).max(z.0).max(0.0), x.1.min(y.1).min(z.1))
 }
 
 /// A ray that meets nothing: it starts beside the scene and goes away from it.

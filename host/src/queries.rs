@@ -85,7 +85,12 @@ impl Queries {
         Ok(Hits { surfaces: self.surfaces.clone(), batch, answers })
     }
 
-    /// Whether each of `count` rays meets anything before its end.
+    /// Runs something with its threads.
+    pub fn install<R: Send>(&self, run: impl FnOnce() -> R + Send) -> R {
+        self.surfaces.threads.install(run)
+    }
+
+    /// Whether each of `count` rays meets anything up to its end, or a roundoff farther: what is met first is met up to its distance.
     ///
     /// # Errors
     /// What a GPU reports.

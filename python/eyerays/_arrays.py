@@ -6,14 +6,30 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
+LARGEST = 1e18
+"""Coordinates are below this, so that squares of them are numbers of float32."""
+
+
 def floats(name: str, values: ArrayLike) -> NDArray:
     """An array of float32 or float64: itself if it is one, whatever its strides."""
-    array = np.asarray(values)
+    array = _numbers(name, values, "iufb")
     if array.dtype not in (np.float32, np.float64):
-        if array.dtype.kind not in "iufb":
-            raise TypeError(f"{name} holds {array.dtype}, not numbers")
         array = array.astype(np.float32 if array.dtype == np.float16 else np.float64)
     return array if array.flags.aligned else array.copy()
+
+
+def doubles(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """An array of float64, aligned."""
+    return np.require(_numbers(name, values, "iufb"), np.float64, "A")
+
+
+def _numbers(name: str, values: ArrayLike, kinds: str) -> NDArray:
+    if isinstance(values, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array, whose mask nothing here asks; give what is not masked")
+    array = np.asarray(values)
+    if array.dtype.kind not in kinds:
+        raise TypeError(f"{name} holds {array.dtype}, not {'integers' if kinds == 'iu' else 'numbers'}")
+    return array
 
 
 def rows(name: str, values: ArrayLike) -> NDArray:
@@ -29,19 +45,22 @@ def finite_rows(name: str, values: ArrayLike) -> NDArray:
     array = rows(name, values)
     if array.ndim != 2:
         raise ValueError(f"{name} has the shape {array.shape}, not (n, 3)")
+    if len(array) == 0:
+        raise ValueError(f"{name} is empty; a mesh has a triangle at least")
     bad = ~np.isfinite(array).all(axis=1)
     if bad.any():
         raise ValueError(f"{name}[{int(bad.argmax())}] is not finite")
+    large = (np.abs(array) > LARGEST).any(axis=1)
+    if large.any():
+        raise ValueError(f"{name}[{int(large.argmax())}] is beyond {LARGEST:g}; choose a larger unit")
     return array
 
 
 def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     """Rows of three numbers of vertices, all of which there are."""
-    array = np.asarray(values)
-    if array.size == 0:
+    if np.size(values) == 0:
         raise ValueError(f"{name} is empty; a mesh has a triangle at least")
-    if array.dtype.kind not in "iu":
-        raise TypeError(f"{name} holds {array.dtype}, not integers")
+    array = _numbers(name, values, "iu")
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} has the shape {array.shape}, not (n, 3)")
     least, greatest = int(array.min()), int(array.max())
@@ -53,13 +72,14 @@ def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
 
 def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Matrices of four rows and columns that move points, one or an axis of them."""
-    array = np.asarray(values, np.float64)
-    if array.ndim == 2:
-        array = array[None]
+    given = doubles(name, values)
+    array = given[None] if given.ndim == 2 else given
     if array.ndim != 3 or array.shape[1:] != (4, 4):
-        raise ValueError(f"{name} has the shape {array.shape}, not (n, 4, 4)")
+        raise ValueError(f"{name} has the shape {given.shape}, not (n, 4, 4)")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} is not finite")
-    if not (array[:, 3] == [0, 0, 0, 1]).all():
+    if (np.abs(array) > LARGEST).any():
+        raise ValueError(f"{name} has a number beyond {LARGEST:g}; choose a larger unit")
+    if not np.allclose(array[:, 3], [0, 0, 0, 1], rtol=0, atol=1e-9):
         raise ValueError(f"{name} has a last row that is not 0, 0, 0, 1")
     return array

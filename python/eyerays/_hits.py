@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Hits:
     """What each ray meets first, in arrays of the rays' shape; those that were not asked for are None.
 
@@ -60,22 +61,30 @@ TYPES = {
 """What an array may hold; the first is what is made."""
 
 
-def arrays(shape: tuple[int, ...], names, out) -> dict[str, NDArray]:
-    """The arrays to be filled: those of `out`, and new ones for what else is asked for."""
+def arrays(shape: tuple[int, ...], names, out, inputs: Iterable[NDArray]) -> dict[str, NDArray]:
+    """The arrays to be filled: those of `out`, none of which is one of `inputs`, and new ones for what else is asked for."""
+    if out is not None and not isinstance(out, Mapping):
+        raise TypeError("out maps names of fields to arrays")
     out = {} if out is None else dict(out)
     names = tuple(out) or NAMES if names is None else ((names,) if isinstance(names, str) else tuple(names))
     for name in (*names, *out):
         if name not in SHAPES:
             raise ValueError(f"a hit has no {name!r}; it has {', '.join(NAMES)}")
-    return {
+    made = {
         name: _checked(name, out[name], shape) if name in out else np.empty(shape + SHAPES[name], TYPES[name][0])
         for name in dict.fromkeys((*names, *out))
     }
+    others = list(inputs)
+    for name in out:
+        if any(np.may_share_memory(made[name], other) for other in others):
+            raise ValueError(f"out[{name!r}] shares memory with other arrays of this call; give an array of its own")
+        others.append(made[name])
+    return made
 
 
 def _checked(name: str, array, shape: tuple[int, ...]) -> NDArray:
     wanted = shape + SHAPES[name]
-    if not isinstance(array, np.ndarray):
+    if not isinstance(array, np.ndarray) or isinstance(array, np.ma.MaskedArray):
         raise TypeError(f"out[{name!r}] is no numpy array")
     if array.dtype not in TYPES[name]:
         kinds = " or ".join(np.dtype(kind).name for kind in TYPES[name])

@@ -18,6 +18,11 @@ from ._native import Surfaces
 Progress = bool | Callable[[int, int], Any] | None
 """True for a bar of tqdm, or what is called with how many rays are done and how many there are."""
 
+MOST_THREADS = 1024
+
+_STAYED: list[Surfaces | None] = []
+"""What forked processes have left of those that they were forked from."""
+
 FAR = 8.0
 """A scene that is so many times its size away from zero is moved there before it is rounded."""
 
@@ -28,7 +33,7 @@ class Scene:
     Coordinates are kept in float32. Those of float64 are rounded once; a scene that is far away from zero for its size is moved to it
     before, so that nothing of its shape is lost. Rays of float64 are rounded once, too, where they meet the scene.
 
-    Several threads may ask one scene. `threads` is how many it takes itself; 0 is one a core.
+    Several threads may ask one scene, and processes that were forked. `threads` is how many it takes itself; 0 is one a core.
     `quality` is how well the hierarchy over the triangles is built: "fast", "medium" or "high".
     """
 
@@ -40,16 +45,15 @@ class Scene:
         quality: str = "medium",
         threads: int = 0,
     ) -> None:
-        if threads < 0:
-            raise ValueError(f"threads is {threads}; it is at least 0")
+        if not 0 <= threads <= MOST_THREADS:
+            raise ValueError(f"threads is {threads}; it is 0 to {MOST_THREADS}")
         if quality not in ("fast", "medium", "high"):
             raise ValueError(f'quality {quality!r} is none of "fast", "medium" and "high"')
         self._meshes: list[tuple[NDArray, NDArray, NDArray | None]] = []
         self._objects = 0
         self._quality, self._threads = quality, threads
-        self._lock = threading.Lock()
-        self._surfaces: Surfaces | None = None
-        self._is_file = False
+        self._path: str | None = None
+        self._forget()
         if (vertices is None) != (faces is None):
             raise ValueError("vertices and faces belong together; give both or none")
         if vertices is not None and faces is not None:
@@ -64,17 +68,18 @@ class Scene:
 
         Returns the numbers of the objects that they become.
         """
-        moved = _arrays.matrices("transforms", transforms)
+        moved = _arrays.matrices("transforms", transforms).copy()
         if len(moved) == 0:
             raise ValueError("transforms is empty; give a matrix at least")
         first = self._add(vertices, faces, moved)
         return range(first, self._objects)
 
     def _add(self, vertices: ArrayLike, faces: ArrayLike, transforms: NDArray | None) -> int:
-        if self._is_file:
+        if self._path is not None:
             raise ValueError("the scene is that of a file, which takes no more meshes; make another scene")
-        places = _arrays.finite_rows("vertices", vertices)
-        mesh = (places, _arrays.corners("faces", faces, len(places)), transforms)
+        # Copies: what callers do to their arrays later changes nothing here.
+        places = _arrays.finite_rows("vertices", vertices).copy()
+        mesh = (places, _arrays.corners("faces", faces, len(places)).copy(), transforms)
         with self._lock:
             first = self._objects
             self._meshes.append(mesh)
@@ -85,12 +90,35 @@ class Scene:
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, quality: str = "medium", threads: int = 0) -> Scene:
         """The surfaces of a file: TOML, glTF, OBJ, PLY or whatever else the program renders. What is warned of is a UserWarning."""
+        return cls._loaded(path, quality, threads)
+
+    @classmethod
+    def _loaded(cls, path: str | os.PathLike[str], quality: str, threads: int) -> Scene:
+        """What is warned of is said of the caller's caller."""
         scene = cls(quality=quality, threads=threads)
-        scene._surfaces, said = Surfaces.load(os.fspath(path), quality, threads)
-        scene._is_file = True
-        for warning in said:
-            warnings.warn(warning, stacklevel=2)
+        scene._path = os.fsdecode(path)
+        for warning in scene._read():
+            warnings.warn(warning, stacklevel=3)
         return scene
+
+    def _read(self) -> list[str]:
+        self._surfaces, said = Surfaces.load(self._path, self._quality, self._threads)
+        return said
+
+    def _forget(self) -> None:
+        """What a process has, without what it was made of."""
+        self._lock = threading.Lock()
+        self._surfaces: Surfaces | None = None
+        self._process = os.getpid()
+
+    def __getstate__(self) -> dict[str, Any]:
+        own = ("_meshes", "_objects", "_quality", "_threads", "_path")
+        state = {name: getattr(self, name) for name in own}
+        return {**state, "_meshes": list(self._meshes)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._forget()
 
     @classmethod
     def from_trimesh(cls, mesh: Any, *, quality: str = "medium", threads: int = 0) -> Scene:
@@ -101,8 +129,10 @@ class Scene:
                 nodes = mesh.graph.geometry_nodes.get(name, ())
                 if hasattr(geometry, "faces") and len(geometry.faces) and len(nodes):
                     scene.add_instances(geometry.vertices, geometry.faces, [mesh.graph.get(node)[0] for node in nodes])
-        else:
+        elif hasattr(mesh, "faces"):
             scene.add_mesh(mesh.vertices, mesh.faces)
+        if not scene._meshes:
+            raise ValueError(f"this {type(mesh).__name__} has no triangle")
         return scene
 
     @classmethod
@@ -130,8 +160,14 @@ class Scene:
         return self
 
     def _built(self) -> Surfaces:
+        if self._process != os.getpid():
+            # The threads have stayed behind; what waits for them when it is thrown away is kept.
+            _STAYED.append(self._surfaces)
+            self._forget()
         with self._lock:
-            if self._surfaces is None:
+            if self._surfaces is None and self._path is not None:
+                self._read()
+            elif self._surfaces is None:
                 if not self._meshes:
                     raise ValueError("the scene is empty; add a mesh")
                 offset = _offset(self._meshes)
@@ -153,13 +189,14 @@ class Scene:
 
         `origins` and `directions` (..., 3) are broadcast against each other; a direction has any length but zero. Nothing that is
         farther than `tmax` lengths of its direction counts. `fields` names what is told (see `Hits`; all of it otherwise), and `out`
-        has arrays that are filled instead of new ones, by their names. Edges and vertices belong to every triangle that has them; of
-        several that are equally far, the one that was added first is met.
+        has arrays that are filled instead of new ones, by their names; without `fields`, they alone. Edges and vertices belong to every
+        triangle that has them; of several that are equally far, those of `add_mesh` are met before those of `add_instances`, and
+        else what was added first. A ray that starts on a triangle does not meet it there.
         """
         rays, shape = _rays(origins, directions, tmax)
-        arrays = _hits.arrays(shape, fields, out)
+        arrays = _hits.arrays(shape, fields, out, (of for of in rays if isinstance(of, np.ndarray)))
         with _bar(progress) as told:
-            self._built().closest(rays, _hits.native(arrays, len(rays[0])), device, told)
+            self._built().closest(rays, _hits.native(arrays, len(rays[0])), str(device), told)
         return Hits(**arrays)
 
     def any(
@@ -181,13 +218,13 @@ class Scene:
         elif out.shape != shape or not (out.flags.c_contiguous and out.flags.writeable):
             raise ValueError(f"out has gaps, can't be written to or has not the shape {shape}")
         with _bar(progress) as told:
-            self._built().any(rays, out.reshape(-1), device, told)
+            self._built().any(rays, out.reshape(-1), str(device), told)
         return out
 
 
 def load(path: str | os.PathLike[str], *, quality: str = "medium", threads: int = 0) -> Scene:
     """As `Scene.load`."""
-    return Scene.load(path, quality=quality, threads=threads)
+    return Scene._loaded(path, quality, threads)
 
 
 def _offset(meshes: list[tuple[NDArray, NDArray, NDArray | None]]) -> list[float]:
@@ -214,7 +251,7 @@ def _rays(origins: ArrayLike, directions: ArrayLike, tmax: ArrayLike) -> tuple[t
     except ValueError:
         raise ValueError(f"origins {starts.shape} and directions {ways.shape} do not go together") from None
     shape = starts.shape[:-1]
-    limits = np.asarray(tmax, np.float64)
+    limits = _arrays.doubles("tmax", tmax)
     if limits.ndim:
         try:
             limits = np.ascontiguousarray(np.broadcast_to(limits, shape)).reshape(-1)
@@ -232,8 +269,10 @@ class _bar:
         self._progress, self._tqdm = progress, None
 
     def __enter__(self) -> Callable[[int, int], Any] | None:
-        if self._progress is not True:
-            return self._progress or None
+        if self._progress is None or self._progress is False:
+            return None
+        if callable(self._progress):
+            return self._progress
         try:
             from tqdm.auto import tqdm
         except ImportError:

@@ -125,7 +125,9 @@ impl Slices<'_> {
         let triangle = |i: usize| hits.hit(i).map_or(-1, |hit| i64::from(surface(&hit).1));
         let object = |i: usize| hits.hit(i).map_or(-1, |hit| i64::from(surface(&hit).0));
         let place = |i: usize| hits.place(i).unwrap_or(NOWHERE);
-        each(self.t.0, &block.rays, |i| t(i) as f32);
+        // What is met is not infinitely far.
+        let single = |t: f64| if t.is_finite() { t.min(f32::MAX.into()) as f32 } else { f32::INFINITY };
+        each(self.t.0, &block.rays, |i| single(t(i)));
         each(self.t.1, &block.rays, t);
         each(self.triangle.0, &block.rays, |i| triangle(i) as i32);
         each(self.triangle.1, &block.rays, triangle);

@@ -23,14 +23,13 @@ pub fn scene(meshes: &[MeshArrays<'_>], offset: DVec3) -> PyResult<Scene> {
     let mut parts = Parts::default();
     for (number, MeshArrays(vertices, faces, copies)) in meshes.iter().enumerate() {
         let vertices = vertices.view("vertices")?;
-        let (positions, of) = match copies {
-            None => (positions(&vertices, offset), &mut parts.own),
-            Some(_) => (positions(&vertices, DVec3::ZERO), &mut parts.shared),
-        };
-        let range = append(of, positions, faces).map_err(|fault| fault.of(number))?;
+        // Copies are of a mesh around its own middle, which loses least where it stands far away from zero.
+        let middle = if copies.is_some() { middle(&vertices) } else { offset };
+        let of = if copies.is_some() { &mut parts.shared } else { &mut parts.own };
+        let range = append(of, positions(&vertices, middle), faces).map_err(|fault| fault.of(number))?;
         match copies {
             None => parts.objects.push(Primitives::Triangles(range.1)),
-            Some(matrices) => parts.copy(range, matrices.as_array(), offset),
+            Some(matrices) => parts.copy(range, matrices.as_array(), (middle, offset)),
         }
     }
     Ok(parts.finish())
@@ -57,6 +56,14 @@ struct Parts {
     objects: Vec<Primitives>,
 }
 
+/// The middle of a box around vertices.
+fn middle(vertices: &RowsView<'_>) -> DVec3 {
+    let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (least, greatest) = vertices.iter().fold(nowhere, |(least, greatest), p| (least.min(p), greatest.max(p)));
+    let middle = least + (greatest - least) * 0.5;
+    if middle.is_finite() { middle } else { DVec3::ZERO }
+}
+
 fn positions(vertices: &RowsView<'_>, offset: DVec3) -> Vec<Vec3> {
     vertices.iter().map(|place| (place - offset).as_vec3()).collect()
 }
@@ -71,28 +78,34 @@ fn append(to: &mut Mesh, positions: Vec<Vec3>, faces: &PyReadonlyArray2<'_, u32>
         return Err(Fault("there are more vertices than 32 bits count; divide the scene".to_owned()));
     }
     let start = to.triangles.len();
+    // Vertices that no triangle has are left out: they may be anywhere.
+    let mut numbers = vec![None; count];
     for (row, corners) in faces.as_array().rows().into_iter().enumerate() {
         let corners = [corners[0], corners[1], corners[2]];
         if corners.iter().any(|&vertex| vertex as usize >= count) {
             return Err(Fault(format!("faces[{row}] has a vertex that is none of the {count}")));
         }
-        to.triangles.push(corners.map(|vertex| first as u32 + vertex));
+        to.triangles.push(corners.map(|vertex| {
+            *numbers[vertex as usize].get_or_insert_with(|| {
+                to.positions.push(positions[vertex as usize]);
+                to.positions.len() as u32 - 1
+            })
+        }));
     }
-    to.positions.extend(positions);
     to.materials.resize(to.triangles.len(), 0);
-    Ok((first..first + count, start..to.triangles.len()))
+    Ok((first..to.positions.len(), start..to.triangles.len()))
 }
 
 impl Parts {
-    fn copy(&mut self, range: Ranges, matrices: ArrayView3<'_, f64>, offset: DVec3) {
+    fn copy(&mut self, range: Ranges, matrices: ArrayView3<'_, f64>, (middle, offset): (DVec3, DVec3)) {
         for matrix in matrices.outer_iter() {
-            let row = |i: usize| DVec3::new(matrix[[i, 0]], matrix[[i, 1]], matrix[[i, 2]]).as_vec3();
-            let translation = DVec3::new(matrix[[0, 3]], matrix[[1, 3]], matrix[[2, 3]]) - offset;
+            let row = |i: usize| DVec3::new(matrix[[i, 0]], matrix[[i, 1]], matrix[[i, 2]]);
+            let moved = DVec3::from([0, 1, 2].map(|i| row(i).dot(middle) + matrix[[i, 3]]));
             let first = self.instances.len();
             self.instances.push(Instance {
                 mesh: self.ranges.len() as u32,
-                rows: [0, 1, 2].map(row),
-                translation: translation.as_vec3(),
+                rows: [0, 1, 2].map(|i| row(i).as_vec3()),
+                translation: (moved - offset).as_vec3(),
             });
             self.objects.push(Primitives::Instances(first..first + 1));
         }

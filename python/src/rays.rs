@@ -55,12 +55,12 @@ impl<'a> Rays<'a> {
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO || tmax.is_nan() {
             self.fault.fetch_min(i, Ordering::Relaxed);
         }
-        Ray { origin: origin - offset, direction, length: tmax * direction.length() }
+        Ray { origin: origin - offset, direction, length: tmax * length(direction) }
     }
 
     /// How long the direction of ray `i` is.
     pub fn length(&self, i: usize) -> f64 {
-        self.directions.row(i).length()
+        length(self.directions.row(i))
     }
 
     /// Refuses what was given if a ray was none that [`Rays::ray`] has made.
@@ -73,14 +73,20 @@ impl<'a> Rays<'a> {
             return Ok(());
         }
         let what = if !self.origins.row(i).is_finite() {
-            format!("origins[{i}] is not finite")
+            format!("the origin of ray {i} is not finite")
         } else if !self.directions.row(i).is_finite() {
-            format!("directions[{i}] is not finite")
+            format!("the direction of ray {i} is not finite")
         } else if self.directions.row(i) == DVec3::ZERO {
-            format!("directions[{i}] is zero")
+            format!("the direction of ray {i} is zero")
         } else {
-            format!("tmax[{i}] is not a number")
+            format!("tmax of ray {i} is not a number")
         };
         Err(PyValueError::new_err(what))
     }
+}
+
+/// The length of a vector, also where squares overflow or are lost.
+fn length(of: DVec3) -> f64 {
+    let size = of.abs().max_element();
+    if size > 0.0 && size.is_finite() { (of / size).length() * size } else { 0.0 }
 }

@@ -80,7 +80,7 @@ impl Surfaces {
             let hits = queries.closest(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
             rays.check()?;
             let lengths = |i: usize| rays.length(start + i);
-            slices.tell(&Block { hits: &hits, rays: block, lengths, offset: self.offset });
+            queries.install(|| slices.tell(&Block { hits: &hits, rays: block, lengths, offset: self.offset }));
             Ok(())
         })
     }
@@ -128,7 +128,7 @@ impl Surfaces {
             "gpu" => gpu::any().and_then(|gpu| on(&gpu)).map_err(raised),
             "auto" if rays < WORTH_A_GPU => Ok(self.cpu.clone()),
             // What a GPU can't hold the CPU can.
-            "auto" => Ok(gpu::hardware().and_then(|gpu| on(gpu).ok()).unwrap_or_else(|| self.cpu.clone())),
+            "auto" => Ok(gpu::hardware().and_then(|gpu| on(&gpu).ok()).unwrap_or_else(|| self.cpu.clone())),
             other => Err(PyValueError::new_err(format!("device {other:?} is none of \"auto\", \"cpu\" and \"gpu\""))),
         }
     }

@@ -1,5 +1,9 @@
 """Rays through scenes of a known shape."""
 
+import copy
+import os
+import pickle
+import signal
 import threading
 
 import numpy as np
@@ -161,6 +165,11 @@ def test_arrays_of_the_caller_are_filled():
         (ValueError, "not (n, 4, 4)", lambda: eyerays.Scene().add_instances(SQUARE, HALVES, np.eye(3))),
         (ValueError, "not 0, 0, 0, 1", lambda: eyerays.Scene().add_instances(SQUARE, HALVES, 2 * np.eye(4))),
         (ValueError, "quality 'best' is none of", lambda: eyerays.Scene(quality="best")),
+        (ValueError, "vertices[0] is beyond 1e+18", lambda: eyerays.Scene(SQUARE * 1e30, HALVES)),
+        (ValueError, "vertices is empty", lambda: eyerays.Scene(np.empty((0, 3)), HALVES)),
+        (TypeError, "is a masked array", lambda: eyerays.Scene(np.ma.masked_less(SQUARE, 0), HALVES)),
+        (ValueError, "str has no triangle", lambda: eyerays.Scene.from_trimesh("a mesh")),
+        (ValueError, "threads is 100000", lambda: eyerays.Scene(threads=100_000)),
         (ValueError, "threads is -1", lambda: eyerays.Scene(threads=-1)),
         (FileNotFoundError, "nowhere.obj", lambda: eyerays.load("nowhere.obj")),
     ],
@@ -174,11 +183,11 @@ def test_a_scene_that_is_none_is_refused_in_a_line(error, said, make):
 @pytest.mark.parametrize(
     ("error", "said", "arguments"),
     [
-        (ValueError, "origins[2] is not finite", {"origins": [[0, 0, 1], [0, 0, 1], [0, np.inf, 1]]}),
-        (ValueError, "directions[1] is zero", {"directions": [[0, 0, 1], [0, 0, 0], [0, 0, 1]]}),
-        (ValueError, "directions[0] is not finite", {"directions": [0, np.nan, 0]}),
+        (ValueError, "the origin of ray 2 is not finite", {"origins": [[0, 0, 1], [0, 0, 1], [0, np.inf, 1]]}),
+        (ValueError, "the direction of ray 1 is zero", {"directions": [[0, 0, 1], [0, 0, 0], [0, 0, 1]]}),
+        (ValueError, "the direction of ray 0 is not finite", {"directions": [0, np.nan, 0]}),
         (ValueError, "do not go together", {"directions": np.ones((4, 3))}),
-        (ValueError, "tmax[1] is not a number", {"tmax": [1, np.nan, 1]}),
+        (ValueError, "tmax of ray 1 is not a number", {"tmax": [1, np.nan, 1]}),
         (ValueError, "does not go with rays", {"tmax": [1, 2]}),
         (ValueError, "a hit has no 'distance'", {"fields": ["distance"]}),
         (ValueError, 'is none of "auto", "cpu" and "gpu"', {"device": "tpu"}),
@@ -186,6 +195,9 @@ def test_a_scene_that_is_none_is_refused_in_a_line(error, said, make):
         (ValueError, "has the shape (2,), not (3,)", {"out": {"t": np.zeros(2)}}),
         (ValueError, "has gaps", {"out": {"t": np.zeros(6)[::2]}}),
         (TypeError, "is no numpy array", {"out": {"t": [0, 0, 0]}}),
+        (TypeError, "out maps names of fields", {"out": np.zeros(3)}),
+        (TypeError, "tmax holds <U1", {"tmax": "a"}),
+        (ValueError, "out['error'] shares memory", {"out": dict.fromkeys(("t", "error"), np.zeros(3, np.float32))}),
     ],
 )
 def test_rays_that_are_none_are_refused_in_a_line(error, said, arguments):
@@ -196,11 +208,102 @@ def test_rays_that_are_none_are_refused_in_a_line(error, said, arguments):
     assert said in str(raised.value) and "\n" not in str(raised.value)
 
 
+def test_arrays_that_lie_at_odd_addresses_are_read():
+    def odd(array):
+        return np.frombuffer(b"\0" + array.tobytes(), np.uint8)[1:].view(array.dtype).reshape(array.shape)
+
+    scene = eyerays.Scene(odd(SQUARE), odd(HALVES))
+    scene.add_instances(odd(SQUARE), odd(HALVES), odd(np.eye(4)))
+    origins, directions = np.tile([0.5, -0.5, 2.0], (3, 1)), np.tile(-UP, (3, 1))
+    assert scene.closest(odd(origins), odd(directions), tmax=odd(np.full(3, 9.0))).t.tolist() == [2.0] * 3
+
+
+def test_copies_of_a_mesh_that_stands_far_away_are_where_it_is():
+    far = np.array([4e7 + 0.3, -3e7, 0])
+    alone, copied = eyerays.Scene(SQUARE + far, HALVES), eyerays.Scene()
+    copied.add_instances(SQUARE + far, HALVES, np.eye(4))
+    origins, directions = far + [[0.5, -0.5, 2.0]], -UP
+    assert abs(alone.closest(origins, directions).t[0] - 2) < 1e-5
+    assert abs(copied.closest(origins, directions).t[0] - 2) < 1e-5
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e-170, 1e-30, 1.0, 1e30, 1e200])
+def test_directions_of_any_length_count_in_it(length):
+    scene = eyerays.Scene(SQUARE, HALVES)
+    t = np.zeros(1)
+    met = scene.closest([[0.5, -0.5, 2.0]], -UP * length, out={"t": t}, fields=["t", "triangle"])
+    assert met.triangle[0] == 0 and abs(t[0] * length - 2) < 1e-6
+    assert scene.any([0.5, -0.5, 2.0], -UP * length, tmax=2.1 / length)
+    assert not scene.any([0.5, -0.5, 2.0], -UP * length, tmax=1.9 / length)
+    # Farther than float32 counts, but not infinitely far.
+    assert scene.closest([[0.5, -0.5, 2.0]], -UP * length, fields="t").hit[0]
+
+
+def test_what_is_met_is_met_up_to_its_distance():
+    scene = eyerays.Scene(*icosphere(3))
+    random = np.random.default_rng(4)
+    origins, directions = random.uniform(-3, 3, (3000, 3)), random.normal(size=(3000, 3))
+    hits = scene.closest(origins, directions, out={"t": np.zeros(3000)}, fields=["t", "triangle"])
+    assert np.array_equal(scene.any(origins, directions, tmax=hits.t), hits.hit)
+    assert np.array_equal(scene.closest(origins, directions, tmax=hits.t).triangle, hits.triangle)
+    assert not scene.any(origins[hits.hit], directions[hits.hit], tmax=hits.t[hits.hit] * (1 - 1e-5)).any()
+
+
+@pytest.mark.parametrize("distance", [1e2, 1e6, 1e10, 1e14])
+def test_rays_of_double_precision_come_from_afar(distance):
+    scene = eyerays.Scene(*icosphere(4))
+    random = np.random.default_rng(6)
+    aims = random.uniform(-0.5, 0.5, (500, 3))
+    ways = random.normal(size=(500, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    hits = scene.closest(aims - distance * ways, ways)
+    assert hits.hit.all()
+    beside = hits.point - aims
+    beside -= np.einsum("ij,ij->i", beside, ways)[:, None] * ways
+    assert np.abs(beside).max() < 1e-5 + distance * 1e-15
+
+
+def test_what_callers_do_to_their_arrays_later_changes_nothing():
+    vertices, faces = SQUARE.copy(), HALVES.copy()
+    scene = eyerays.Scene(vertices, faces)
+    vertices += 5
+    faces[:] = 0
+    scene.add_mesh(SQUARE + [9, 0, 0], HALVES)
+    assert scene.closest([0.5, -0.5, 2.0], -UP).t == 2
+
+
+def test_vertices_that_no_triangle_has_are_not_there():
+    far = np.vstack([SQUARE[:1] * 1e17, SQUARE])
+    assert eyerays.Scene(far, HALVES + 1).closest([0.5, -0.5, 2.0], -UP).t == 2
+
+
+def test_scenes_are_copied_and_pickled():
+    scene = eyerays.Scene(SQUARE, HALVES).build()
+    others = [copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))]
+    assert scene.add_mesh(SQUARE + [10, 0, 0], HALVES) == 1
+    for other in others:
+        assert other.closest([[0.5, -0.5, 2.0], [10.5, -0.5, 2.0]], -UP).object.tolist() == [0, -1]
+        assert other.add_mesh(SQUARE + [5, 0, 0], HALVES) == 1
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_forked_process_asks_on():
+    scene = eyerays.Scene(*icosphere(4))
+    directions = np.random.default_rng(3).normal(size=(5000, 3))
+    expected = scene.closest(np.zeros(3), directions).t
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)
+        os._exit(0 if np.array_equal(scene.closest(np.zeros(3), directions).t, expected) else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
 def test_a_claim_of_a_billion_rays_takes_no_memory_before_it_fails():
     scene = eyerays.Scene(SQUARE, HALVES)
     # Rows that lie over each other: 24 GB in name alone.
     many = np.broadcast_to(np.zeros(3), (1_000_000_000, 3))
-    with pytest.raises(ValueError, match=r"directions\[0\] is zero"):
+    with pytest.raises(ValueError, match="the direction of ray 0 is zero"):
         scene.any(many, many)
 
 

@@ -42,12 +42,7 @@ impl Normalisation {
     /// A place that may lie outside the scene, such as a camera's or a light's, as a kernel takes it; none if it is too
     /// far away for the kernel's numbers.
     pub fn place_anywhere(&self, p: Vec3) -> Option<Vec3> {
-        self.place_exactly(p.as_dvec3())
-    }
-
-    /// The same for a place in double precision, which is rounded once.
-    pub fn place_exactly(&self, p: DVec3) -> Option<Vec3> {
-        let placed = flushed(self.exactly(p).as_vec3());
+        let placed = self.place(p);
         placed.to_array().iter().all(|x| x.abs() < FARTHEST).then_some(placed)
     }
 

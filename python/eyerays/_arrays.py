@@ -57,7 +57,7 @@ def finite_rows(name: str, values: ArrayLike) -> NDArray:
 
 
 def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
-    """Rows of three numbers of vertices, all of which there are."""
+    """Rows of three numbers of vertices, all of which there are, in an array of their own."""
     if np.size(values) == 0:
         raise ValueError(f"{name} is empty; a mesh has a triangle at least")
     array = _numbers(name, values, "iu")
@@ -67,7 +67,7 @@ def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     if least < 0 or greatest >= vertices:
         row = int(((array < 0) | (array >= vertices)).any(axis=1).argmax())
         raise ValueError(f"{name}[{row}] is {array[row].tolist()}, but the vertices are 0 to {vertices - 1}")
-    return np.require(array, np.uint32, "A")
+    return array.astype(np.uint32)
 
 
 def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -79,7 +79,7 @@ class Scene:
             raise ValueError("the scene is that of a file, which takes no more meshes; make another scene")
         # Copies: what callers do to their arrays later changes nothing here.
         places = _arrays.finite_rows("vertices", vertices).copy()
-        mesh = (places, _arrays.corners("faces", faces, len(places)).copy(), transforms)
+        mesh = (places, _arrays.corners("faces", faces, len(places)), transforms)
         with self._lock:
             first = self._objects
             self._meshes.append(mesh)

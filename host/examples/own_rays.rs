@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
     let hits = batch.hits(&packed, &answers);
-    let distances: Vec<f64> = hits.iter().flatten().map(|hit| hit.distance).collect();
+    let distances: Vec<f64> = hits.iter().flatten().map(|hit| hit.t).collect();
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     println!("{} of {count} rays meet a surface, {mean:.3} away on average", distances.len());
 

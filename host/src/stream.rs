@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use eyerays_shader::data::{numbers, pack};
 use eyerays_shader::ray::Hit;
+use eyerays_shader::stage::Found;
 use glam::{UVec4, Vec3};
 
 /// A ray of a stream.
@@ -22,6 +23,13 @@ pub struct StreamRay {
 impl StreamRay {
     /// It starts on no primitive.
     pub const NOWHERE: u32 = Hit::<f32>::NOTHING;
+    /// A ray that meets nothing: it starts beside the scene and goes away from it.
+    pub(crate) const AWAY: StreamRay = StreamRay {
+        origin: Vec3::new(2.0, 0.0, 0.0),
+        direction: Vec3::X,
+        limit: 0.0,
+        source_primitive: StreamRay::NOWHERE,
+    };
 }
 
 /// Rays as kernels read them ([`eyerays_shader::stage::Segment`]).
@@ -57,6 +65,11 @@ impl Stream {
     pub fn part(&self, rays: Range<usize>) -> Self {
         let seconds = self.len() + rays.start..self.len() + rays.end;
         Stream { words: [&self.words[rays], &self.words[seconds]].concat() }
+    }
+
+    /// Those rays of it, as a stream of their own.
+    pub(crate) fn of(&self, rays: &[u32]) -> Self {
+        Stream::new(rays.iter().map(|&ray| self.ray(ray as usize)))
     }
 
     /// How many rays there are.
@@ -106,4 +119,20 @@ pub enum Answers {
     Closest(Vec<UVec4>),
     /// [`eyerays_shader::stage::REACHED`] or [`eyerays_shader::stage::SHADOWED`].
     Occlusion(Vec<u32>),
+}
+
+impl Answers {
+    /// What ray `i` of `count` has found, if that was asked.
+    pub(crate) fn found(&self, i: usize, count: usize) -> Option<Found<f32>> {
+        let Answers::Closest(records) = self else { return None };
+        (i < count).then(|| found(records, i, count))
+    }
+}
+
+/// What ray `i` of `count` has found, as [`Answers::Closest`] has it.
+pub(crate) fn found(records: &[UVec4], i: usize, count: usize) -> Found<f32> {
+    let instance = records.get(count + i).map_or(StreamRay::NOWHERE, |record| record.w);
+    let record = records[i];
+    let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
+    Found { t, coordinates: (u, v), index: record.w, instance, time: 0.0 }
 }

@@ -3,12 +3,13 @@
 use std::marker::PhantomData;
 
 use eyerays_shader::data::{Effects, Launch};
+use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, FACES_AWAY, Found, Segment, ShadowInputs};
 use eyerays_shader::traverse::{
-    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Leaf, Packet, Primitives, Sequential, Speculative, StackMax,
-    Together, Triangles, WhileWhile,
+    self, Bvh8Method, Closest, Cut, Hybrid, IfIf, Interleaved, Leaf, Occlusion, Packet, Primitives, Sequential,
+    Speculative, StackMax, Together, Triangles, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 
@@ -95,7 +96,64 @@ fn nodes<R: Scalar, L: Leaf>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32
 impl<R: Scalar, L: Leaf> Task<R> for Nodes<'_, R, L> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        one_by_one::<R, L, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.query);
+        let Slots { geometry, slots, query, .. } = self.0;
+        let is_large = geometry.bvh8.bytes() > CACHED;
+        match query {
+            Query::Trace(paths, hits) if is_large => {
+                let mut rays = Traced { geometry: &geometry, slots, paths, hits };
+                traverse::interleaved::<Closest, L, R, V>(&geometry, slots.len(), &mut rays);
+            }
+            Query::Shadow(asking, _, answers) if is_large && geometry.base.spec.launch.has(Launch::STREAM) => {
+                let mut rays = Asked { geometry: &geometry, slots, asking, answers };
+                traverse::interleaved::<Occlusion, L, R, V>(&geometry, slots.len(), &mut rays);
+            }
+            query => one_by_one::<R, L, Bvh8Method<V>>(&geometry, slots, query),
+        }
+    }
+}
+
+/// Where a hierarchy is larger than what a core has to itself, rays take their steps in turn; else they would wait for each other and for
+/// nothing else.
+const CACHED: usize = 2 << 20;
+
+/// Rays of a stream, before whose ends something may be.
+struct Asked<'a, R: Scalar> {
+    geometry: &'a TraceContext<'a>,
+    slots: &'a [u32],
+    asking: ShadowInputs<'a, R>,
+    answers: &'a mut [u32],
+}
+
+impl<R: Scalar> traverse::Rays<R> for Asked<'_, R> {
+    #[inline(always)]
+    fn ray(&self, i: usize) -> (Ray<R>, R) {
+        let (segment, _) = stage::shadow_ray(self.geometry, self.asking, self.slots[i], 0);
+        (segment.ray(), segment.limit)
+    }
+
+    #[inline(always)]
+    fn done(&mut self, i: usize, _: &Ray<R>, hit: &Hit<R>) {
+        self.answers[i] = stage::visibility(hit);
+    }
+}
+
+/// Slots' rays, whose closest hits are looked for.
+struct Traced<'a, R: Scalar> {
+    geometry: &'a TraceContext<'a>,
+    slots: &'a [u32],
+    paths: &'a [R::Record],
+    hits: &'a mut [Found<R>],
+}
+
+impl<R: Scalar> traverse::Rays<R> for Traced<'_, R> {
+    #[inline(always)]
+    fn ray(&self, i: usize) -> (Ray<R>, R) {
+        stage::ray::<R>(self.geometry, (self.slots[i], self.hits[i].time), self.paths)
+    }
+
+    #[inline(always)]
+    fn done(&mut self, i: usize, ray: &Ray<R>, hit: &Hit<R>) {
+        self.hits[i] = Found::of(self.geometry, ray, hit);
     }
 }
 

@@ -66,6 +66,12 @@ pub trait Number: Scalar<Record: Send + Sync> {
     /// Follows the rays of some slots, with the instructions of an [`Isa`].
     fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>);
 
+    /// Finds the next crossings of some rays of a stream, each past the one that is told of it.
+    fn cross(geometry: &TraceContext<'_>, slots: &[u32], stream: &[Self::Record], found: &mut [Found<Self>]);
+
+    /// Finds the triangles that are nearest to where some rays of a stream start.
+    fn nearest(geometry: &TraceContext<'_>, slots: &[u32], stream: &[Self::Record], found: &mut [Found<Self>]);
+
     /// Shades a wave.
     fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>);
 
@@ -115,6 +121,18 @@ macro_rules! number {
 
             fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>) {
                 follow(isa, way, geometry, slots, query);
+            }
+
+            fn cross(geometry: &TraceContext<'_>, slots: &[u32], stream: &[Self::Record], found: &mut [Found<Self>]) {
+                for (&slot, found) in slots.iter().zip(found) {
+                    *found = stage::cross::<Self, WhileWhile<Alone>>(geometry, (slot, *found), stream);
+                }
+            }
+
+            fn nearest(geometry: &TraceContext<'_>, slots: &[u32], stream: &[Self::Record], found: &mut [Found<Self>]) {
+                for (&slot, found) in slots.iter().zip(found) {
+                    *found = stage::nearest::<Self>(&geometry.hierarchy(), slot, stream);
+                }
             }
 
             fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>) {

@@ -2,6 +2,7 @@
 //! nothing to decode or to shuffle. The same primitives have the same indices as in the other hierarchies.
 
 use crate::data::Primitive;
+use glam::Vec3;
 
 /// Eight siblings. A box is wider than the primitives' own boxes below it by [`Bvh8Node::MARGIN`] on every side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,19 +90,28 @@ impl Bvh8Ref {
 /// The most primitives of a leaf.
 pub const MOST: usize = 4;
 
-/// Up to four triangles.
+/// Up to four triangles, in three lines of a cache: what their test decides by is all here.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 pub struct Triangle4 {
     /// By vertex and axis a coordinate of each triangle; NaN, which is never hit, where there is none.
     pub vertices: [[[f32; MOST]; 3]; 3],
     /// The index of each triangle.
     pub primitive_indices: [u32; MOST],
+    /// The number of each in the scene.
+    pub numbers: [u32; MOST],
+    /// The flags of each.
+    pub flags: [u32; MOST],
 }
 
 impl Triangle4 {
     /// No triangle.
-    pub const EMPTY: Triangle4 = Triangle4 { vertices: [[[f32::NAN; MOST]; 3]; 3], primitive_indices: [0; MOST] };
+    pub const EMPTY: Triangle4 = Triangle4 {
+        vertices: [[[f32::NAN; MOST]; 3]; 3],
+        primitive_indices: [0; MOST],
+        numbers: [0; MOST],
+        flags: [0; MOST],
+    };
 
     /// Triangles, each with its index.
     ///
@@ -116,8 +126,17 @@ impl Triangle4 {
                 }
             }
             block.primitive_indices[lane] = index;
+            (block.numbers[lane], block.flags[lane]) = (triangle.number(), triangle.flags());
         }
         block
+    }
+
+    /// A triangle's record, but for its material.
+    #[inline(always)]
+    pub fn primitive(&self, lane: usize) -> Primitive {
+        let lane = lane % MOST;
+        let place = |vertex: usize| Vec3::from([0, 1, 2].map(|axis| self.vertices[vertex][axis][lane]));
+        Primitive::triangle([place(0), place(1), place(2)], self.numbers[lane], 0, self.flags[lane])
     }
 }
 
@@ -201,4 +220,11 @@ pub struct Bvh8View<'a> {
     pub spheres: &'a [Sphere4],
     /// Leaves of other primitives, or of several kinds.
     pub mixed: &'a [Mixed4],
+}
+
+impl Bvh8View<'_> {
+    /// What it takes of memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.nodes) + size_of_val(self.triangles) + size_of_val(self.spheres) + size_of_val(self.mixed)
+    }
 }

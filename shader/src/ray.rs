@@ -24,6 +24,9 @@ pub struct Ray<R: Real> {
     pub source_primitive: R::Index,
     /// When it is, of all lanes: from 0, where the shutter opens, to 1, where it closes.
     pub time: f32,
+    /// Crossings nearer than this, and there those of triangles up to the one that it starts on, are behind it: only
+    /// [`Crossings`](crate::traverse::Crossings) ask.
+    pub behind: R,
 }
 
 /// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
@@ -90,13 +93,28 @@ impl<R: Real> Ray<R> {
         } else {
             V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z))
         };
-        Ray { origin, direction: d, inverse, offset: origin.times(inverse), shear, source_primitive, time: 0.0 }
+        Ray {
+            origin,
+            direction: d,
+            inverse,
+            offset: origin.times(inverse),
+            shear,
+            source_primitive,
+            time: 0.0,
+            behind: R::splat(-1.0),
+        }
     }
 
     /// The same ray at another time.
     #[inline(always)]
     pub fn at(self, time: f32) -> Self {
         Ray { time, ..self }
+    }
+
+    /// The same ray past a crossing of a triangle at a distance.
+    #[inline(always)]
+    pub fn past(self, distance: R, triangle: u32) -> Self {
+        Ray { behind: distance, source_primitive: R::index(triangle), ..self }
     }
 
     /// A vertex relative to the origin, its axes cycled.

@@ -199,7 +199,30 @@ pub struct TraceContext<'a> {
     pub cutout: Cutout<'a>,
 }
 
+/// A launch and the hierarchy over its primitives.
+#[derive(Clone, Copy)]
+pub struct Hierarchy<'a> {
+    /// The launch and its primitives.
+    pub base: LaunchContext<'a>,
+    /// See [`TraceContext::nodes`].
+    pub nodes: &'a [UVec4],
+}
+
 impl TraceContext<'_> {
+    /// The hierarchy of pairs.
+    #[inline(always)]
+    pub fn hierarchy(&self) -> Hierarchy<'_> {
+        Hierarchy { base: self.base, nodes: self.nodes }
+    }
+
+    /// The primitive at an index.
+    #[inline(always)]
+    pub fn primitive(&self, index: u32) -> Primitive {
+        self.base.primitive(index)
+    }
+}
+
+impl Hierarchy<'_> {
     /// The child pair that a reference leads to where the copy has it at a time that the reference was found in, and the copy that it
     /// is in itself: it may lead to one.
     #[inline(always)]
@@ -234,12 +257,6 @@ impl TraceContext<'_> {
             let [right_centre, right_half] = [word(4 * number + 2), word(4 * number + 3)];
             CentredPair { left_centre, left_half, right_centre, right_half }
         }
-    }
-
-    /// The primitive at an index.
-    #[inline(always)]
-    pub fn primitive(&self, index: u32) -> Primitive {
-        self.base.primitive(index)
     }
 }
 

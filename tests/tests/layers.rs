@@ -163,7 +163,7 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
         let Some(hit) = hit else { continue };
         seen.insert(objects[i]);
         assert_eq!(primitives[i], hit.primitive + 1, "pixel {i}");
-        let far = hit.distance * forward[i];
+        let far = hit.t * rays[i].direction.length() * forward[i];
         assert!((depth - far).abs() <= 1e-4 * far, "pixel {i}: {depth} and {far}");
         let triangle = scene.mesh.materials.get(hit.primitive as usize);
         assert!(triangle.is_none_or(|material| materials[i] == material + 1), "pixel {i}");

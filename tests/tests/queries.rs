@@ -45,7 +45,7 @@ fn anything_is_met_where_something_is_met_first() {
         let count = met.iter().filter(|&&met| met).count();
         assert!((RAYS / 50..=RAYS).contains(&count), "{name}: {count}");
         // And nothing before what is met first, but for the last bits of single precision.
-        let before = |i: usize| Ray { length: hits.hit(i).map_or(0.0, |hit| hit.distance * (1.0 - 1e-5)), ..rays[i] };
+        let before = |i: usize| Ray { tmax: hits.hit(i).map_or(0.0, |hit| hit.t * (1.0 - 1e-5)), ..rays[i] };
         let early = queries.any(RAYS, before).unwrap();
         assert!(early.iter().all(|early| !early), "{name}");
     }
@@ -73,8 +73,8 @@ fn places_are_on_the_triangles_and_along_the_rays() {
             let size = a.abs().max(b.abs()).max(c.abs()).max_element();
             assert!((point - a).dot(normal).abs() <= error + 1e-15 * size, "{name}: {point} of {ray:?}");
             assert!(at.normal.as_dvec3().distance(normal) < 1e-3, "{name}: {} and {normal}", at.normal);
-            let along = ray.origin + ray.direction.normalize() * hit.distance;
-            assert!(along.distance(point) < 2e-3 * hit.distance.max(size), "{name}: {along} and {point}");
+            let along = ray.origin + ray.direction * hit.t;
+            assert!(along.distance(point) < 2e-3 * along.distance(ray.origin).max(size), "{name}: {along} and {point}");
             seen += 1;
         }
         assert!(seen > 20, "{name}: {seen}");

@@ -6,7 +6,7 @@ use eyerays_kernels_cpu::{Isa, Number, Query};
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{Found, ShadowInputs};
+use eyerays_shader::stage::{Found, SHADOWED, ShadowInputs};
 use rayon::prelude::*;
 
 use super::pool::pool;
@@ -14,7 +14,7 @@ use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::job::Job;
 use crate::method::{Method, Traversal};
-use crate::stream::{Answers, Question, Stream};
+use crate::stream::{Answers, Question, Stream, StreamRay};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
 const TASK: usize = 1024;
@@ -50,13 +50,7 @@ pub fn cast_by(
 }
 
 /// [`cast_by`] with the threads that it is called in.
-pub(crate) fn cast_here(
-    isa: Isa,
-    packed: &Job,
-    traversal: Traversal,
-    stream: &Stream,
-    question: Question,
-) -> (Answers, Duration) {
+fn cast_here(isa: Isa, packed: &Job, traversal: Traversal, stream: &Stream, question: Question) -> (Answers, Duration) {
     let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
@@ -78,6 +72,77 @@ pub(crate) fn cast_here(
             (Answers::Occlusion(shadows), start.elapsed())
         }
     }
+}
+
+/// The closest hits of rays that are made, followed and told of a task at a time, with the threads that it is called in: what lies
+/// between stays in a core's cache.
+pub(crate) fn closest_here<M: Send, T: Send>(
+    packed: &Job,
+    method: Method,
+    rays: impl Fn(usize) -> (StreamRay, M) + Sync,
+    answers: &mut [T],
+    tell: impl Fn(&M, &Found<f32>) -> T + Sync,
+) {
+    by_tasks((packed, method), rays, answers, |geometry, (slots, stream, measures), answers| {
+        let mut found = vec![Found::nothing(); slots.len()];
+        let query = Query::Trace(stream.words(), &mut found);
+        f32::follow(Isa::best(), method.way(), geometry, slots, query);
+        answers
+            .iter_mut()
+            .zip(measures.iter().zip(&found))
+            .for_each(|(to, (measure, found))| *to = tell(measure, found));
+    });
+}
+
+/// Likewise whether rays meet anything.
+pub(crate) fn any_here(packed: &Job, method: Method, rays: impl Fn(usize) -> StreamRay + Sync, answers: &mut [bool]) {
+    let rays = |i| (rays(i), ());
+    by_tasks((packed, method), rays, answers, |geometry, (slots, stream, _), answers| {
+        let mut shadows = vec![0; slots.len()];
+        let asking = ShadowInputs { lights: &[], paths: stream.words(), hits: &[] };
+        f32::follow(Isa::best(), method.way(), geometry, slots, Query::Shadow(asking, 0, &mut shadows));
+        answers.iter_mut().zip(shadows).for_each(|(to, shadow)| *to = shadow == SHADOWED);
+    });
+}
+
+/// The rays of a task: their numbers, themselves, and what else there is of each.
+type TaskRays<'a, M> = (&'a [u32], &'a Stream, &'a [M]);
+
+fn by_tasks<M: Send, T: Send>(
+    (packed, method): (&Job, Method),
+    rays: impl Fn(usize) -> (StreamRay, M) + Sync,
+    answers: &mut [T],
+    work: impl Fn(&TraceContext<'_>, TaskRays<'_, M>, &mut [T]) + Sync,
+) {
+    let laid = SceneView::new(packed, method.into());
+    answers.par_chunks_mut(TASK).enumerate().with_max_len(1).for_each(|(number, answers)| {
+        let (first, frame) = (number * TASK, packed.stream_frame(answers.len()));
+        let mut more = Vec::with_capacity(answers.len());
+        let stream = Stream::new((0..answers.len()).map(|i| {
+            let (ray, of_ray) = rays(first + i);
+            more.push(of_ray);
+            ray
+        }));
+        let slots: Vec<u32> = (0..answers.len() as u32).collect();
+        work(&laid.stream(&frame), (&slots, &stream, &more), answers);
+    });
+}
+
+/// The next crossings of some rays of a stream, each past the one that is told of it, likewise.
+pub(crate) fn cross_here(packed: &Job, stream: &Stream, slots: &[u32], found: &mut [Found<f32>]) {
+    let (laid, frame) = (SceneView::new(packed, Method::WhileWhile.into()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    tasks(slots, found, |slots, found| f32::cross(&geometry, slots, stream.words(), found));
+}
+
+/// What is nearest to where the rays of a stream start, likewise.
+pub(crate) fn nearest_here(packed: &Job, stream: &Stream) -> Vec<Found<f32>> {
+    let (laid, frame) = (SceneView::new(packed, Method::WhileWhile.into()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    let slots: Vec<u32> = (0..stream.len() as u32).collect();
+    let mut found = vec![Found::nothing(); stream.len()];
+    tasks(&slots, &mut found, |slots, found| f32::nearest(&geometry, slots, stream.words(), found));
+    found
 }
 
 /// The closest hits of a stream's rays in the arithmetic `R`, as [`cast`] finds them in exact precision: (t, u,

@@ -205,8 +205,8 @@ impl<R: Number> Executor for Launch<'_, R> {
             }
             Stage::Scatter => self.scatter(&scene),
             Stage::Emit => self.emit(&scene),
-            // A map has its lists made when all photons have landed.
-            Stage::File => {}
+            // A map has its lists made when all photons have landed, and of streams alone is asked what they cross or are near to.
+            Stage::File | Stage::Cross | Stage::Nearest => {}
             Stage::Gather => R::gather(self.frame, step.spec, &self.records, self.film),
             Stage::Accumulate => R::accumulate(self.frame, step.spec, &mut self.records, self.film),
         }

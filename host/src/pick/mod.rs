@@ -106,7 +106,7 @@ impl Observer<f32> for Picker<'_> {
         let Some(slot) = trail::slot_of(scene, slots, self.aim) else { return };
         let found = Found::<f32>::load(&scene.base, slot, &records.hits);
         if !found.is_nothing() {
-            let ray = Segment::<f32>::load(scene, slot, &records.paths).ray().at(found.time);
+            let ray = Segment::<f32>::load(scene.base.frame.slots, slot, &records.paths).ray().at(found.time);
             let ruler = trail::ruler(self.job, scene, slot, &ray);
             let picked = picked(self.job, scene, &found, ray.direction, ruler.distance(found.t.into()));
             self.picked.lock().expect("no thread has panicked").get_or_insert(picked);

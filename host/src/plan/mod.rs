@@ -23,6 +23,10 @@ pub enum Stage {
     Advance,
     /// Follows the rays of a wave.
     Trace,
+    /// Finds the next crossings of a stream's rays.
+    Cross,
+    /// Finds the triangles that are nearest to where a stream's rays start.
+    Nearest,
     /// Follows the shadow rays of its hits.
     Shadow,
     /// Dims the light of shadow rays by what is between surfaces.
@@ -48,6 +52,8 @@ impl Stage {
             Stage::Generate => "generate",
             Stage::Advance => "advance",
             Stage::Trace => "trace",
+            Stage::Cross => "cross",
+            Stage::Nearest => "nearest",
             Stage::Shadow => "shadow",
             Stage::Transmit => "transmit",
             Stage::Shade => "shade",

@@ -10,27 +10,28 @@ use crate::scene::Range;
 use crate::scene::studio;
 use crate::scene::{Background, Environment, Settings, Transport};
 
-/// Reads `[render]`; what it does not say is the default.
+/// Reads `[render]`; what it does not say is as before. Either number of samples goes before both.
 ///
 /// # Errors
 /// A number out of range, or an unknown key.
-pub fn settings(mut table: Table) -> Result<Settings> {
-    let default = Settings::default();
+pub fn settings(mut table: Table, default: Settings) -> Result<Settings> {
+    let (samples, spp) =
+        (table.whole("samples", 1, Settings::MOST_SAMPLES)?, table.whole("spp", 1, Settings::MOST_SPP)?);
     let settings = Settings {
         size: table.pair("size", 1, Settings::MOST_SIDE)?.unwrap_or(default.size),
-        samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?.unwrap_or(default.samples),
+        samples: samples.unwrap_or(default.samples),
+        spp: spp.unwrap_or(if samples.is_some() { 0 } else { default.spp }),
         sampler: table.choice("sampler")?.unwrap_or(default.sampler),
         bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.bounces),
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
         compensation: table.flag("compensation")?.unwrap_or(default.compensation),
-        spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
         filter: table.choice("filter")?.unwrap_or(default.filter),
-        pixel_filter: table.choice("pixel_filter")?,
+        pixel_filter: table.choice("pixel_filter")?.or(default.pixel_filter),
         transparent: table.flag("transparent")?.unwrap_or(default.transparent),
         caustics: table.number("caustics", Range::PHOTONS)?.unwrap_or(default.caustics),
         spectral: table.flag("spectral")?.unwrap_or(default.spectral),
-        transport: transport(&mut table)?,
+        transport: transport(&mut table, default.transport)?,
     };
     settings.grid().map_err(|error| table.fault_of("spp", error.message()))?;
     let (width, height) = settings.size;
@@ -39,8 +40,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
     Ok(settings)
 }
 
-fn transport(table: &mut Table) -> Result<Transport> {
-    let default = Transport::default();
+fn transport(table: &mut Table, default: Transport) -> Result<Transport> {
     Ok(Transport {
         integrator: table.choice("integrator")?.unwrap_or(default.integrator),
         seed: table.whole("seed", 0, u32::MAX)?.unwrap_or(default.seed),

@@ -239,7 +239,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
 fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
     table.table("shutter")?.map(shutter::read).transpose()?;
-    let settings = table.table("render")?.map(document::settings);
+    let settings = table.table("render")?.map(|table| document::settings(table, Settings::default()));
     let settings = settings.transpose()?.unwrap_or_default();
     let holding = loading.clone();
     let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));

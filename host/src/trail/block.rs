@@ -27,7 +27,7 @@ impl Block {
     pub fn of(scene: &TraceContext<'_>, slots: &[u32], records: &Records<f32>) -> Block {
         let ray = |slot: u32| {
             let time = Found::<f32>::load(&scene.base, slot, &records.hits).time;
-            let segment = Segment::<f32>::load(scene, slot, &records.paths);
+            let segment = Segment::<f32>::load(scene.base.frame.slots, slot, &records.paths);
             (segment.ray().at(time), segment.limit)
         };
         let mut block = Block { rays: [ray(slots[0]).0; LANES], limits: [NOWHERE; LANES], lanes: 0 };

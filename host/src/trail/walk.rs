@@ -136,7 +136,7 @@ impl<'w, W: Witness> Walk<'w, W> {
         R: RayLanes<Lane = f32> + Lanes<f32>,
     {
         self.witness.event(Event::Node);
-        let (pair, instance) = self.context.opened(at.node, at.instance, ray.time);
+        let (pair, instance) = self.context.hierarchy().opened(at.node, at.instance, ray.time);
         let below = |node| Waiting { node, instance, depth: at.depth + 1 };
         let children = [below(pair.left()), below(pair.right())];
         let spans = spans(&pair, ray, hit);

@@ -386,6 +386,8 @@ fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
                 "shade" => bound::shade,
                 "scatter" => bound::scatter,
                 "emit" => bound::emit,
+                "cross" => bound::cross,
+                "nearest" => bound::nearest,
                 "file" => bound::file,
                 "transmit" => bound::transmit,
                 "generate" => bound::generate,

@@ -140,6 +140,12 @@ impl Primitive {
         self.a.w
     }
 
+    /// The flags, and the kind.
+    #[inline(always)]
+    pub fn flags(&self) -> u32 {
+        self.c.w
+    }
+
     /// The index of the material.
     #[inline(always)]
     pub fn material(&self) -> u32 {

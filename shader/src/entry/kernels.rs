@@ -130,11 +130,12 @@ macro_rules! methods {
 
 /// A precision's kernels, those that always vote apart: a device without subgroups takes the others.
 macro_rules! precision {
-    ($R:ty, $alone:ident, $subgroup:ident) => {
+    ($R:ty, $alone:ident, $subgroup:ident $(, $more:ident)?) => {
         /// Kernels whose lanes need not hear of each other.
         pub mod $alone {
             use super::*;
             shading!($R);
+            $($more!($R);)?
             crate::for_each_method!(methods alone $R);
         }
         /// Kernels whose lanes vote.
@@ -151,7 +152,7 @@ macro_rules! precision {
 }
 
 #[cfg(feature = "exact")]
-precision!(f32, exact, subgroup_exact);
+precision!(f32, exact, subgroup_exact, asking);
 #[cfg(feature = "fast")]
 precision!(crate::real::Fast, fast, subgroup_fast);
 

@@ -215,6 +215,39 @@ macro_rules! shading {
     };
 }
 
+/// What only streams are asked, by no method, over the numbers `R`.
+// In exact precision alone: who asks wants to know.
+#[cfg(any(feature = "exact", not(target_arch = "spirv")))]
+macro_rules! asking {
+    ($R:ty) => {
+        entry! {
+            /// Finds the next crossing of each ray of a stream.
+            cross<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame nodes primitives instances paths hits wide opacities textures texels coordinates colours] {
+                let slot = thread(spec, id);
+                if slot < frame.slots {
+                    let base = LaunchContext::new(frame, spec, primitives, instances);
+                    let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                    let scene = TraceContext { base, nodes, wide, cutout };
+                    let before = stage::Found::<$R>::load(&base, slot, hits);
+                    stage::cross::<$R, WhileWhile<Alone>>(&scene, (slot, before), paths).store(&base, slot, hits);
+                }
+            }
+        }
+
+        entry! {
+            /// Finds the triangle that is nearest to where each ray of a stream starts.
+            nearest<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame nodes primitives instances paths hits] {
+                let slot = thread(spec, id);
+                if slot < frame.slots {
+                    let base = LaunchContext::new(frame, spec, primitives, instances);
+                    stage::nearest::<$R>(&crate::scene::Hierarchy { base, nodes }, slot, paths).store(&base, slot, hits);
+                }
+            }
+        }
+    };
+}
+
 /// The stages that follow rays over the numbers `R` by a method, a thread a ray.
 macro_rules! tracing {
     ($R:ty, $method:ty) => {
@@ -322,7 +355,7 @@ macro_rules! persistent_tracing {
 #[cfg(not(target_arch = "spirv"))]
 pub mod bound {
     shading!(f32);
-
+    asking!(f32);
     tracing!(f32, ());
 
     /// Of persistent subgroups.

@@ -13,6 +13,7 @@
 //! of positive weights with depths of at most 2, and two reciprocals) or of two interpolations: 42 in all, on an axis, of 32 of the
 //! padding and the 25 of the margin of nodes that their own test leaves.
 
+use super::crossing::Crossed;
 use super::triangle::{Candidate, sheared};
 use crate::real::{FAINT, Mask, Real, TINY, V3};
 
@@ -53,12 +54,50 @@ impl<R: Real> Candidate<R> {
         (inside & (!self.strays | (cut.meets & R::splat(0.0).lt(t))), t)
     }
 
+    /// Where a ray [crosses](super::crosses) the triangle. What crosses it by what the test of crossings takes for zero may be next to it by
+    /// this one, or be behind: then its place is looked for, as that of a triangle that is seen edge-on.
+    #[inline(always)]
+    pub fn passage(&self, crossed: &Crossed<R>, [a, b, c]: [V3<R>; 3], (shear, along): ((R, R), R)) -> Passage<R> {
+        let zero = R::splat(0.0);
+        let is_unknown = !self.inside | self.area.eq(zero);
+        let scale = self.scale(crossed.is & !is_unknown);
+        let t = self.depth * scale;
+        let is_line = is_unknown | self.strays;
+        if !(crossed.is & is_line).any() {
+            return Passage { ahead: crossed.is, t, u: self.u, v: self.v, scale };
+        }
+        let t = R::select(is_line, (cut(a, b, c, shear).depth * along).flush(FAINT), t);
+        let (u, v, own) = crossed.weights();
+        Passage {
+            ahead: crossed.is & (!is_line | zero.lt(t)),
+            t,
+            u: R::select(is_unknown, u, self.u),
+            v: R::select(is_unknown, v, self.v),
+            scale: R::select(is_unknown, own, scale),
+        }
+    }
+
     /// What distance and weights are to be multiplied by, in lanes that are inside.
     #[inline(always)]
     pub fn scale(&self, inside: R::Mask) -> R {
         // Other lanes divide by one, so that none divides by zero.
         R::select(inside & !self.area.eq(R::splat(0.0)), self.area, R::splat(1.0)).reciprocal()
     }
+}
+
+/// Where a ray crosses a triangle.
+#[derive(Clone, Copy)]
+pub struct Passage<R: Real> {
+    /// In which lanes it does so ahead.
+    pub ahead: R::Mask,
+    /// The distance.
+    pub t: R,
+    /// Scaled weight of the second vertex.
+    pub u: R,
+    /// Scaled weight of the third vertex.
+    pub v: R,
+    /// What the weights are to be multiplied by.
+    pub scale: R,
 }
 
 /// Where a ray passes a triangle.

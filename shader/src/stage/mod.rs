@@ -7,9 +7,11 @@
 
 mod aov;
 mod caught;
+mod cross;
 mod film;
 mod found;
 mod generate;
+mod nearest;
 mod path;
 mod path_state;
 mod persistent;
@@ -22,12 +24,14 @@ mod transmit;
 
 pub use aov::{AOV_WORDS, AovSlot, AovSums, Contribution, FirstSurface, Split, expose_aovs, sum_records};
 pub use caught::{CatcherSums, Caught};
+pub use cross::cross;
 pub use film::{
     BLOCK, FILM_WORDS, FilmWords, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION,
     SQUARE_MOST, Sample, brightness, expose, expose_blocks, film_words,
 };
 pub use found::Found;
 pub use generate::{CameraTables, generate};
+pub use nearest::nearest;
 pub use path::{Path, RECORDS};
 pub use path_state::{LINKED_GROUPS, PathState, ShadowRay, sampled, shadow_records, state_records};
 pub use persistent::persistent;

@@ -3,7 +3,6 @@
 use crate::buffer::{read, write};
 use crate::ray::Ray;
 use crate::real::{Scalar, V3};
-use crate::scene::TraceContext;
 
 /// Where a ray starts, where it goes and how far.
 #[derive(Clone, Copy)]
@@ -22,16 +21,16 @@ pub struct Segment<R> {
 pub const NOWHERE: f32 = -1.0;
 
 impl<R: Scalar> Segment<R> {
-    /// Ray `index` of a stream: two records, all first ones before all second ones, so that
+    /// Ray `index` of a stream of `count`: two records, all first ones before all second ones, so that
     /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
     #[inline(always)]
-    pub fn load(context: &TraceContext<'_>, index: u32, stream: &[R::Record]) -> Self {
+    pub fn load(count: u32, index: u32, stream: &[R::Record]) -> Self {
         let (origin, source_primitive) = R::load(read(stream, index));
-        let (direction, limit) = R::load(read(stream, context.base.frame.slots + index));
+        let (direction, limit) = R::load(read(stream, count + index));
         Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), source_primitive }
     }
 
-    /// Keeps it where [`Segment::load`] finds it in a stream of `count` rays; the limit in single precision.
+    /// Keeps it where [`Segment::load`] finds it; the limit in single precision.
     #[inline(always)]
     pub fn store(&self, count: u32, index: u32, stream: &mut [R::Record]) {
         write(stream, index, R::store(self.origin, self.source_primitive));

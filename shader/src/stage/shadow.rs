@@ -37,7 +37,7 @@ pub fn shadow_ray<R: Scalar>(
     index: u32,
 ) -> (Segment<R>, bool) {
     if context.base.spec.launch.has(Launch::STREAM) {
-        return (Segment::load(context, slot, asking.paths), true);
+        return (Segment::load(context.base.frame.slots, slot, asking.paths), true);
     }
     let path = Path::<R>::current(&context.base, slot, asking.paths);
     let found = Found::<R>::load(&context.base, slot, asking.hits);

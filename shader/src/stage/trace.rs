@@ -12,7 +12,7 @@ use crate::traverse::{Closest, Leaf, Method};
 #[inline(always)]
 pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
     if context.base.spec.launch.has(Launch::STREAM) {
-        return Segment::load(context, slot, paths);
+        return Segment::load(context.base.frame.slots, slot, paths);
     }
     let path = Path::<R>::current(&context.base, slot, paths);
     let Path { origin, direction, weight, source_primitive, .. } = path;

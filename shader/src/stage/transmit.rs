@@ -42,7 +42,7 @@ pub fn transmit<R: Scalar, M: Method<R>, L: Leaf>(
     if read(shadows, slot) != REACHED || !R::splat(0.0).lt(light.greatest()) {
         return;
     }
-    let segment = Segment::<R>::load(context, slot, segments);
+    let segment = Segment::<R>::load(context.base.frame.slots, slot, segments);
     let (mut inside, lead, chain) = ShadowRay::<R>::medium(frame.slots, slot, segments);
     let Segment { mut origin, mut source_primitive, direction, limit: mut left } = segment;
     let is_open = context.base.spec.media.has(Media::OPEN);

@@ -12,7 +12,7 @@ use core::mem::MaybeUninit;
 
 use super::leaf::{Leaf, occluded};
 use super::{Method, Query};
-use crate::bvh8::{Bvh8Node, Bvh8Ref};
+use crate::bvh8::{Bvh8Node, Bvh8Ref, LeafKind};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Native, Scalar, SimdIsa, V3};
 use crate::scene::TraceContext;
@@ -23,30 +23,81 @@ pub struct Bvh8Method<V = Native>(PhantomData<V>);
 impl<R: Scalar, V: SimdIsa<R>> Method<R> for Bvh8Method<V> {
     #[inline(always)]
     fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        let boxes = Boxes::<R, V::Eight>::new(ray);
-        let mut stack = Stack::new();
-        let mut at = Bvh8Ref::ROOT;
-        loop {
-            while !at.is_leaf() {
-                Q::on_boxes(8);
-                let node = &context.bvh8.nodes[at.index()];
-                let (met, near) = boxes.meet(node, hit.t);
-                let next = if Q::ANY { first(node, met, &mut stack) } else { nearest(node, met, &near, &mut stack) };
-                match next.or_else(|| stack.take(hit.t.to_f32())) {
-                    Some(next) => at = next,
-                    None => return,
-                }
-            }
-            L::intersect_block::<Q, R, V::Four>(context, at, ray, hit);
+        let mut walk = Walk::<R, V>::new(ray);
+        while walk.step::<Q, L>(context, ray, hit) {}
+    }
+}
+
+/// A ray on its way.
+pub(super) struct Walk<R: Scalar, V: SimdIsa<R>> {
+    boxes: Boxes<R, V::Eight>,
+    stack: Stack,
+    at: Bvh8Ref,
+}
+
+impl<R: Scalar, V: SimdIsa<R>> Walk<R, V> {
+    /// At the root.
+    #[inline(always)]
+    pub fn new(ray: &Ray<R>) -> Self {
+        Walk { boxes: Boxes::new(ray), stack: Stack::new(), at: Bvh8Ref::ROOT }
+    }
+
+    /// At the root, for another ray.
+    #[inline(always)]
+    pub fn turn(&mut self, ray: &Ray<R>) {
+        (self.boxes, self.stack.count, self.at) = (Boxes::new(ray), 0, Bvh8Ref::ROOT);
+    }
+
+    /// Visits a node or a leaf. Is anything left?
+    #[inline(always)]
+    pub fn step<Q: Query, L: Leaf>(&mut self, context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
+        let Walk { boxes, stack, at } = self;
+        if at.is_leaf() {
+            L::intersect_block::<Q, R, V::Four>(context, *at, ray, hit);
             if Q::ANY && occluded(hit) {
-                return;
+                return false;
             }
-            match stack.take(hit.t.to_f32()) {
-                Some(next) => at = next,
-                None => return,
+        } else {
+            Q::on_boxes(8);
+            let node = &context.bvh8.nodes[at.index()];
+            let (met, near) = boxes.meet(node, hit.t);
+            let next = if Q::ANY { first(node, met, stack) } else { nearest(node, met, &near, stack) };
+            if let Some(next) = next {
+                *at = next;
+                return true;
             }
         }
+        match stack.take(hit.t.to_f32()) {
+            Some(next) => {
+                *at = next;
+                true
+            }
+            None => false,
+        }
     }
+
+    /// Asks for what the next step reads, which is then on its way from memory while other rays take theirs.
+    #[inline(always)]
+    pub fn prefetch(&self, context: &TraceContext<'_>) {
+        let index = self.at.index();
+        if !self.at.is_leaf() {
+            prefetch(&context.bvh8.nodes[index]);
+        } else if self.at.kind() == LeafKind::Triangles {
+            prefetch(&context.bvh8.triangles[index]);
+        }
+    }
+}
+
+/// Asks for all lines of a cache that hold something.
+#[inline(always)]
+fn prefetch<T>(of: &T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..size_of::<T>().div_ceil(64) {
+        use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch reads nothing, and each address is in `of` or where that ends.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(core::ptr::from_ref(of).cast::<i8>().byte_add(64 * line)) };
+    }
+    let _ = of;
 }
 
 /// A ray, prepared for box tests.

@@ -3,7 +3,7 @@
 use super::resumable::Progress;
 use crate::data::{CentredPair, Effects, NodeRef, STACK};
 use crate::ray::Hit;
-use crate::scene::TraceContext;
+use crate::scene::Hierarchy;
 
 /// Nodes still to visit. Kept beside its [`Cursor`], since rust-gpu allows no pointer in a struct that
 /// lives across a loop: that the two belong together is the promise of who calls. A packet's stack is replicated in every lane, so its hits are right even where a
@@ -38,9 +38,9 @@ impl Cursor {
     /// The child pair of the current node, which is inner, at the time of a ray. What is on the stack when it leads to a copy is
     /// outside of that.
     #[inline(always)]
-    pub fn open(&mut self, context: &TraceContext<'_>, time: f32) -> CentredPair {
-        let (pair, instance) = context.opened(self.node, self.instance, time);
-        if context.base.spec.effects.has(Effects::INSTANCED) {
+    pub fn open(&mut self, hierarchy: &Hierarchy<'_>, time: f32) -> CentredPair {
+        let (pair, instance) = hierarchy.opened(self.node, self.instance, time);
+        if hierarchy.base.spec.effects.has(Effects::INSTANCED) {
             let enters = self.instance == Hit::<f32>::NOTHING && instance != Hit::<f32>::NOTHING;
             self.outside = if enters { self.depth } else { self.outside };
             self.instance = instance;

@@ -136,7 +136,7 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
                 // SAFETY: likewise.
                 unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
-                let pair = cursor.open(context, ray.time);
+                let pair = cursor.open(&context.hierarchy(), ray.time);
                 let instance = cursor.instance;
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);

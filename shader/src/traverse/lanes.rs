@@ -94,6 +94,7 @@ impl<R: Real> Ray<R> {
             shear: self.shear.lane(i),
             source_primitive: S::index(R::index_of(self.source_primitive, i)),
             time: self.time,
+            behind: self.behind.lane(i),
         }
     }
 }

@@ -10,8 +10,11 @@ mod cursor;
 mod cwbvh;
 mod hybrid;
 mod if_if;
+#[cfg(not(target_arch = "spirv"))]
+mod interleaved8;
 pub mod lanes;
 pub mod leaf;
+mod nearest;
 mod nested;
 mod packet;
 pub mod resumable;
@@ -26,8 +29,11 @@ pub use cwbvh::CwbvhMethod;
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 #[cfg(not(target_arch = "spirv"))]
+pub use interleaved8::{Rays, interleaved};
+#[cfg(not(target_arch = "spirv"))]
 pub use leaf::Triangles;
-pub use leaf::{Cutout, Leaf, Primitives};
+pub use leaf::{Crossings, Cutout, Leaf, Primitives};
+pub use nearest::nearest;
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;

@@ -28,7 +28,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
                 // SAFETY: it pushes to no other stack.
                 unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
-                let pair = cursor.open(context, ray.time);
+                let pair = cursor.open(&context.hierarchy(), ray.time);
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));

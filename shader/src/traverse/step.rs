@@ -56,7 +56,7 @@ pub(super) unsafe fn pair<Q: Query, R: Scalar>(
     cursor: &mut Cursor,
     stack: &mut Stack,
 ) {
-    let pair = cursor.open(context, ray.time);
+    let pair = cursor.open(&context.hierarchy(), ray.time);
     Q::on_boxes(2);
     let wanted = children(&pair, ray, hit);
     // SAFETY: the caller's.

@@ -65,7 +65,7 @@ fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
     let frame = packed.stream_frame(stream.len());
     let geometry = laid.stream(&frame);
     let misses = |i: &u32| {
-        let segment = Segment::<R>::load(&geometry, *i, stream.words());
+        let segment = Segment::<R>::load(geometry.base.frame.slots, *i, stream.words());
         let mut hit = Hit::none(segment.limit);
         M::traverse::<Closest, Primitives>(&geometry, &segment.ray(), &mut hit);
         hit.primitive_index == Hit::<R>::NOTHING

@@ -28,7 +28,7 @@ impl Truth {
         let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
         let geometry = laid.stream(&frame);
         let dark = |i: u32| {
-            let segment = Segment::<f32>::load(&geometry, i, stream.words());
+            let segment = Segment::<f32>::load(geometry.base.frame.slots, i, stream.words());
             let (ray, mut hit) = (segment.ray(), Hit::none(segment.limit));
             for slot in 0..packed.primitives().len() as u32 {
                 Primitives::intersect::<Occlusion, f32>(&geometry, (slot, u32::MAX), &ray, &mut hit);

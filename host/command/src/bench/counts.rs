@@ -183,7 +183,7 @@ fn single<M: traverse::Method<f32>>(
 ) -> Calls {
     counted(1, || {
         for i in rays {
-            let segment = Segment::<f32>::load(geometry, i as u32, stream.words());
+            let segment = Segment::<f32>::load(stream.len() as u32, i as u32, stream.words());
             traverse::<f32, M>(geometry, &segment.ray(), Hit::none(segment.limit), question);
         }
     })

@@ -1,5 +1,6 @@
 //! What the leaves of a hierarchy hold. Every traversal method takes it as a type, as it takes what a ray searches for.
 
+mod crossings;
 mod cutout;
 mod disk;
 mod hidden;
@@ -9,6 +10,7 @@ mod sphere;
 mod tests;
 mod triangle;
 
+pub use crossings::{Crossings, crossing_weights};
 pub use cutout::Cutout;
 #[cfg(not(target_arch = "spirv"))]
 pub use primitives::Triangles;

@@ -1,0 +1,128 @@
+//! All that rays cross.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use eyerays_shader::stage::Found;
+
+use super::Queries;
+use super::hits::{Met, Place, Surfaces};
+use crate::batch::{Batch, Hit, Ray};
+use crate::cpu;
+use crate::error::Result;
+use crate::gpu::Caster;
+
+/// Crossings of many rays, those of a ray one after the other, the nearest first.
+pub struct Crossings {
+    surfaces: Arc<Surfaces>,
+    /// Where those of each ray begin, and how many there are in all.
+    starts: Vec<usize>,
+    met: Vec<Met>,
+}
+
+/// Past nothing.
+const BEFORE: f32 = -1.0;
+
+impl Crossings {
+    /// Asks for the next crossing of each ray until none has any.
+    pub(super) fn found(queries: &Queries, count: usize, ray: &(impl Fn(usize) -> Ray + Sync)) -> Result<Self> {
+        let Queries { surfaces, caster } = queries;
+        surfaces.threads.install(|| {
+            let batch = Batch::of(&surfaces.job, count, ray);
+            let passes = match caster {
+                Some(caster) => on_gpu(caster, &batch)?,
+                None => on_cpu(surfaces, &batch),
+            };
+            let mut starts = vec![0; count + 1];
+            passes.iter().flat_map(|pass| &pass.slots).for_each(|&slot| starts[slot as usize + 1] += 1);
+            for slot in 0..count {
+                starts[slot + 1] += starts[slot];
+            }
+            let mut met = vec![Met::NOTHING; starts[count]];
+            // A pass has the next of each of its rays.
+            for (number, pass) in passes.iter().enumerate() {
+                for (&slot, of) in pass.slots.iter().zip(&pass.found) {
+                    met[starts[slot as usize] + number] = surfaces.met(batch.measure(slot as usize), of);
+                }
+            }
+            Ok(Crossings { surfaces: surfaces.clone(), starts, met })
+        })
+    }
+
+    /// How many there are of all rays.
+    pub fn len(&self) -> usize {
+        self.met.len()
+    }
+
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.met.is_empty()
+    }
+
+    /// The numbers of a ray's crossings, the nearest first.
+    pub fn of_ray(&self, ray: usize) -> Range<usize> {
+        match self.starts.get(ray..ray + 2) {
+            Some(&[start, end]) => start..end,
+            _ => 0..0,
+        }
+    }
+
+    /// A crossing by its number.
+    pub fn hit(&self, number: usize) -> Option<Hit> {
+        self.met.get(number)?.hit()
+    }
+
+    /// See [`Hits::surface`](super::Hits::surface).
+    pub fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
+        self.surfaces.surface(hit.primitive)
+    }
+
+    /// Where it is.
+    pub fn place(&self, number: usize) -> Option<Place> {
+        self.surfaces.place(self.met.get(number)?)
+    }
+}
+
+/// The next crossing of each ray that has one.
+struct Pass {
+    slots: Vec<u32>,
+    found: Vec<Found<f32>>,
+}
+
+impl Pass {
+    /// All rays, before their first.
+    fn first(count: usize) -> Pass {
+        Pass { slots: (0..count as u32).collect(), found: vec![Found { t: BEFORE, ..Found::nothing() }; count] }
+    }
+
+    /// Those rays that have found something.
+    fn kept(self) -> Pass {
+        let both = self.slots.into_iter().zip(self.found).filter(|(_, found)| !found.is_nothing());
+        let (slots, found) = both.unzip();
+        Pass { slots, found }
+    }
+}
+
+fn on_cpu(surfaces: &Surfaces, batch: &Batch) -> Vec<Pass> {
+    let next = |slots: &[u32], found: &mut [Found<f32>]| {
+        cpu::cross_here(&surfaces.job, batch.stream(), slots, found);
+        Ok(())
+    };
+    passes(batch, next).expect("a CPU does not fail")
+}
+
+fn on_gpu(caster: &Caster, batch: &Batch) -> Result<Vec<Pass>> {
+    passes(batch, |slots, found| caster.cross(&batch.stream().of(slots), found))
+}
+
+/// Pass after pass, until no ray crosses anything more.
+fn passes(batch: &Batch, mut next: impl FnMut(&[u32], &mut [Found<f32>]) -> Result<()>) -> Result<Vec<Pass>> {
+    let mut passes = Vec::new();
+    let mut pass = Pass::first(batch.stream().len());
+    while !pass.slots.is_empty() {
+        next(&pass.slots, &mut pass.found)?;
+        pass = pass.kept();
+        passes.push(Pass { slots: pass.slots.clone(), found: pass.found.clone() });
+    }
+    Ok(passes)
+}

@@ -1,4 +1,4 @@
-"""Exact ray queries on GPU and CPU, with the same bits.
+"""Exact ray queries and pictures on GPU and CPU, with the same bits.
 
 >>> import eyerays, numpy as np
 >>> corners = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], np.float32)
@@ -8,7 +8,8 @@
 (2.0, 0)
 """
 
-from ._hits import Hits
+from ._hits import Crossings, Hits, Nearest
+from ._pictures import Picture, Session, render
 from ._scene import Scene, load
 
-__all__ = ["Hits", "Scene", "load"]
+__all__ = ["Crossings", "Hits", "Nearest", "Picture", "Scene", "Session", "load", "render"]

@@ -70,6 +70,16 @@ def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     return array.astype(np.uint32)
 
 
+def of_vertices(name: str, values: ArrayLike, shape: tuple[int, int]) -> NDArray:
+    """Finite rows of numbers, one a vertex, in an array of their own."""
+    array = floats(name, values)
+    if array.shape != shape:
+        raise ValueError(f"{name} has the shape {array.shape}, not {shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} is not finite")
+    return array.copy()
+
+
 def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Matrices of four rows and columns that move points, one or an axis of them."""
     given = doubles(name, values)
@@ -83,3 +93,14 @@ def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:
     if not np.allclose(array[:, 3], [0, 0, 0, 1], rtol=0, atol=1e-9):
         raise ValueError(f"{name} has a last row that is not 0, 0, 0, 1")
     return array
+
+
+def to_fill(out: NDArray | None, shape: tuple[int, ...], kind: type) -> NDArray:
+    """The array `out` if it can be filled with a number a ray, or a new one if there is none."""
+    if out is None:
+        return np.empty(shape, kind)
+    if not isinstance(out, np.ndarray) or out.dtype != kind:
+        raise TypeError(f"out is no numpy array of {np.dtype(kind).name}")
+    if out.shape != shape or not (out.flags.c_contiguous and out.flags.aligned and out.flags.writeable):
+        raise ValueError(f"out has gaps, can't be written to or has not the shape {shape}")
+    return out

@@ -43,6 +43,49 @@ class Hits:
         raise ValueError("none of t, triangle and object was asked for, which tell of hits")
 
 
+@dataclass(frozen=True, eq=False)
+class Crossings:
+    """All that rays cross, a row each: first those of the first ray, the nearest first. What was not asked for is None; fields are those of `Hits`."""
+
+    splits: NDArray[np.int64]
+    """Where the rows of each ray begin, and how many rows there are: ray `i` has those from `splits[i]` to before `splits[i + 1]`."""
+    t: NDArray[np.float32] | None = None
+    triangle: NDArray[np.int32] | None = None
+    object: NDArray[np.int32] | None = None
+    uv: NDArray[np.float32] | None = None
+    normal: NDArray[np.float32] | None = None
+    point: NDArray[np.float64] | None = None
+    error: NDArray[np.float32] | None = None
+
+    def __len__(self) -> int:
+        return int(self.splits[-1])
+
+    @property
+    def ray(self) -> NDArray[np.int64]:
+        """Whose each row is, by the ray's number in the order of their broadcast shape."""
+        return np.repeat(np.arange(len(self.splits) - 1), np.diff(self.splits))
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """Where triangles come nearest to points, in arrays of the points' shape; those that were not asked for are None."""
+
+    distance: NDArray[np.floating] | None = None
+    """How far away."""
+    triangle: NDArray[np.signedinteger] | None = None
+    """Which triangle of its object, by its row in `faces`; -1 if there is none at all."""
+    object: NDArray[np.signedinteger] | None = None
+    """Which object."""
+    uv: NDArray[np.float32] | None = None
+    """Where on the triangle: the weights of its second and third vertex."""
+    normal: NDArray[np.float32] | None = None
+    """The triangle's unit normal."""
+    point: NDArray[np.float64] | None = None
+    """Where in space."""
+    error: NDArray[np.float32] | None = None
+    """A bound of how much nearer any other triangle may be."""
+
+
 NAMES = tuple(field.name for field in fields(Hits))
 """The fields' names in their order."""
 
@@ -61,18 +104,37 @@ TYPES = {
 """What an array may hold; the first is what is made."""
 
 
-def arrays(shape: tuple[int, ...], names, out, inputs: Iterable[NDArray]) -> dict[str, NDArray]:
-    """The arrays to be filled: those of `out`, none of which is one of `inputs`, and new ones for what else is asked for."""
-    if out is not None and not isinstance(out, Mapping):
-        raise TypeError("out maps names of fields to arrays")
-    out = {} if out is None else dict(out)
-    names = tuple(out) or NAMES if names is None else ((names,) if isinstance(names, str) else tuple(names))
-    for name in (*names, *out):
+def names(fields: str | Iterable[str] | None, more: Iterable[str] = ()) -> list[str]:
+    """The names of what is asked for, all of them if nothing is said, and more."""
+    listed = NAMES if fields is None else ((fields,) if isinstance(fields, str) else tuple(fields))
+    wanted = list(dict.fromkeys((*listed, *more)))
+    for name in wanted:
         if name not in SHAPES:
             raise ValueError(f"a hit has no {name!r}; it has {', '.join(NAMES)}")
+    return wanted
+
+
+def of_nearest(fields: str | Iterable[str] | None, out: Mapping[str, NDArray] | None):
+    """Both as those of hits have them, whose `t` is the distance."""
+    renamed = {"distance": "t", "t": "distance"}
+    if fields is not None:
+        fields = [renamed.get(name, name) for name in ([fields] if isinstance(fields, str) else fields)]
+    return fields, {renamed.get(name, name): array for name, array in _mapping(out).items()} or None
+
+
+def _mapping(out) -> dict[str, NDArray]:
+    if out is not None and not isinstance(out, Mapping):
+        raise TypeError("out maps names of fields to arrays")
+    return {} if out is None else dict(out)
+
+
+def arrays(shape: tuple[int, ...], fields, out, inputs: Iterable[NDArray]) -> dict[str, NDArray]:
+    """The arrays to be filled: those of `out`, none of which is one of `inputs`, and new ones for what else is asked for."""
+    out = _mapping(out)
+    wanted = names(tuple(out) if fields is None and out else fields, out)
     made = {
         name: _checked(name, out[name], shape) if name in out else np.empty(shape + SHAPES[name], TYPES[name][0])
-        for name in dict.fromkeys((*names, *out))
+        for name in wanted
     }
     others = list(inputs)
     for name in out:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _hits
-from ._hits import Hits
-from ._native import Surfaces
-
-Progress = bool | Callable[[int, int], Any] | None
-"""True for a bar of tqdm, or what is called with how many rays are done and how many there are."""
+from . import _arrays, _files
+from ._native import Studio, Surfaces
+from ._queries import Queries
 
 MOST_THREADS = 1024
 
@@ -27,11 +28,32 @@ FAR = 8.0
 """A scene that is so many times its size away from zero is moved there before it is rounded."""
 
 
-class Scene:
+IN_CODE = {"integrator": "path", "sampler": "sobol"}
+"""How a scene in code is drawn unless it is said otherwise."""
+
+STANDS = ("file", "shape", "scale", "rotate", "translate", "place", "on")
+"""What a mesh in code says by its vertices."""
+
+
+@dataclass(frozen=True)
+class _Mesh:
+    """Vertices, triangles, where copies stand if it is copied, and what it looks like."""
+
+    vertices: NDArray
+    faces: NDArray[np.uint32]
+    transforms: NDArray[np.float64] | None
+    normals: NDArray | None
+    uv: NDArray | None
+    look: Mapping[str, Any]
+
+
+class Scene(Queries):
     """Triangles, alone or many times, that rays are sent through.
 
     Coordinates are kept in float32. Those of float64 are rounded once; a scene that is far away from zero for its size is moved to it
     before, so that nothing of its shape is lost. Rays of float64 are rounded once, too, where they meet the scene.
+
+    `render` draws it, too: `add_material`, `add_light` and `background` say with the words of scene files what that shows.
 
     Several threads may ask one scene, and processes that were forked. `threads` is how many it takes itself; 0 is one a core.
     `quality` is how well the hierarchy over the triangles is built: "fast", "medium" or "high".
@@ -49,7 +71,11 @@ class Scene:
             raise ValueError(f"threads is {threads}; it is 0 to {MOST_THREADS}")
         if quality not in ("fast", "medium", "high"):
             raise ValueError(f'quality {quality!r} is none of "fast", "medium" and "high"')
-        self._meshes: list[tuple[NDArray, NDArray, NDArray | None]] = []
+        self._meshes: list[_Mesh] = []
+        self._materials: dict[str, dict[str, Any]] = {}
+        self._lights: list[dict[str, Any]] = []
+        self.background: Mapping[str, Any] | None = None
+        """What is behind all, for pictures: the keys of `[background]`, such as `color`, or `environment` with the path of a picture."""
         self._objects = 0
         self._quality, self._threads = quality, threads
         self._path: str | None = None
@@ -59,33 +85,98 @@ class Scene:
         if vertices is not None and faces is not None:
             self.add_mesh(vertices, faces)
 
-    def add_mesh(self, vertices: ArrayLike, faces: ArrayLike) -> int:
-        """Adds a mesh: vertices (n, 3) and triangles (m, 3) by their vertices. Returns the number of the object that it becomes."""
-        return self._add(vertices, faces, None)
+    def add_mesh(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uv: ArrayLike | None = None,
+        **look: Any,
+    ) -> int:
+        """Adds a mesh: vertices (n, 3) and triangles (m, 3) by their vertices. Returns the number of the object that it becomes.
 
-    def add_instances(self, vertices: ArrayLike, faces: ArrayLike, transforms: ArrayLike) -> range:
+        All else is for pictures: normals (n, 3) and texture coordinates (n, 2) of the vertices, the second up, and keys of `[[mesh]]` of scene files,
+        such as `material` (a name that `add_material` has), `smooth`, `visible`, and `key` for what moves. Rays meet the mesh where
+        its vertices are.
+        """
+        return self._add(vertices, faces, None, (normals, uv, look))
+
+    def add_instances(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        transforms: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uv: ArrayLike | None = None,
+        **look: Any,
+    ) -> range:
         """Adds copies of a mesh that is kept once: one for each matrix (k, 4, 4), which takes its vertices to the scene.
 
-        Returns the numbers of the objects that they become.
+        Returns the numbers of the objects that they become. All else is as in `add_mesh`.
         """
         moved = _arrays.matrices("transforms", transforms).copy()
         if len(moved) == 0:
             raise ValueError("transforms is empty; give a matrix at least")
-        first = self._add(vertices, faces, moved)
+        first = self._add(vertices, faces, moved, (normals, uv, look))
         return range(first, self._objects)
 
-    def _add(self, vertices: ArrayLike, faces: ArrayLike, transforms: NDArray | None) -> int:
+    def _add(self, vertices: ArrayLike, faces: ArrayLike, transforms: NDArray | None, drawn: tuple) -> int:
         if self._path is not None:
             raise ValueError("the scene is that of a file, which takes no more meshes; make another scene")
         # Copies: what callers do to their arrays later changes nothing here.
         places = _arrays.finite_rows("vertices", vertices).copy()
-        mesh = (places, _arrays.corners("faces", faces, len(places)), transforms)
+        corners = _arrays.corners("faces", faces, len(places))
+        normals, uv, look = drawn
+        for key in STANDS:
+            if key in look:
+                raise TypeError(f"a mesh in code has no {key!r}: it stands where its vertices are")
+        normals = None if normals is None else _arrays.of_vertices("normals", normals, (len(places), 3))
+        uv = None if uv is None else _arrays.of_vertices("uv", uv, (len(places), 2))
         with self._lock:
             first = self._objects
-            self._meshes.append(mesh)
+            self._meshes.append(_Mesh(places, corners, transforms, normals, uv, dict(look)))
             self._objects += 1 if transforms is None else len(transforms)
             self._surfaces = None
         return first
+
+    def add_material(self, name: str, **keys: Any) -> str:
+        """Adds a material for pictures, with the keys of `[[material]]` of scene files (`base_color`, `metallic`, `roughness`, ...). Returns its name."""
+        self._in_code("materials")
+        self._materials[str(name)] = dict(keys)
+        return str(name)
+
+    def add_light(self, kind: str, **keys: Any) -> None:
+        """Adds a light for pictures: "point", "spot", "directional", ... with the keys of `[[light]]` of scene files."""
+        self._in_code("lights")
+        self._lights.append({"kind": kind, **keys})
+
+    def _in_code(self, what: str) -> None:
+        if self._path is not None:
+            raise ValueError(f"the scene is that of a file, which has its own {what}; make another scene")
+
+    def _drawn(self, wish: Mapping[str, Any]) -> tuple[Studio, list[str]]:
+        """What draws the scene, and what is warned of."""
+        if self._path is not None:
+            return Studio.open({"path": self._path, "text": None, **wish})
+        if not self._meshes:
+            raise ValueError("the scene is empty; add a mesh")
+        with tempfile.TemporaryDirectory(prefix="eyerays-") as folder:
+            meshes = []
+            for number, mesh in enumerate(self._meshes):
+                name = f"mesh{number}"
+                data = _files.glb(name, mesh.vertices, mesh.faces, mesh.normals, mesh.uv, mesh.transforms)
+                Path(folder, f"{name}.glb").write_bytes(data)
+                meshes.append({"file": f"{name}.glb", "material": "default", **mesh.look})
+            materials = [{"name": name, **keys} for name, keys in self._materials.items()]
+            tables = {"render": IN_CODE, "background": self.background, "light": self._lights or None}
+            text = _files.toml({**tables, "material": materials or None, "mesh": meshes})
+            try:
+                return Studio.open({"path": os.path.join(folder, "scene.toml"), "text": text, **wish})
+            except ValueError as error:
+                # The folder is gone when that is read.
+                raise ValueError(str(error).replace(folder + os.sep, "")) from None
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, quality: str = "medium", threads: int = 0) -> Scene:
@@ -112,9 +203,9 @@ class Scene:
         self._process = os.getpid()
 
     def __getstate__(self) -> dict[str, Any]:
-        own = ("_meshes", "_objects", "_quality", "_threads", "_path")
+        own = ("_meshes", "_materials", "_lights", "background", "_objects", "_quality", "_threads", "_path")
         state = {name: getattr(self, name) for name in own}
-        return {**state, "_meshes": list(self._meshes)}
+        return {**state, **{name: copy(state[name]) for name in ("_meshes", "_materials", "_lights")}}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -170,56 +261,9 @@ class Scene:
             elif self._surfaces is None:
                 if not self._meshes:
                     raise ValueError("the scene is empty; add a mesh")
-                offset = _offset(self._meshes)
-                self._surfaces = Surfaces.of_meshes(self._meshes, offset, self._quality, self._threads)
+                meshes = [(of.vertices, of.faces, of.transforms) for of in self._meshes]
+                self._surfaces = Surfaces.of_meshes(meshes, _offset(meshes), self._quality, self._threads)
             return self._surfaces
-
-    def closest(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        *,
-        tmax: ArrayLike = np.inf,
-        device: str = "auto",
-        fields: str | Iterable[str] | None = None,
-        out: Mapping[str, NDArray] | None = None,
-        progress: Progress = None,
-    ) -> Hits:
-        """What each ray meets first.
-
-        `origins` and `directions` (..., 3) are broadcast against each other; a direction has any length but zero. Nothing that is
-        farther than `tmax` lengths of its direction counts. `fields` names what is told (see `Hits`; all of it otherwise), and `out`
-        has arrays that are filled instead of new ones, by their names; without `fields`, they alone. Edges and vertices belong to every
-        triangle that has them; of several that are equally far, those of `add_mesh` are met before those of `add_instances`, and
-        else what was added first. A ray that starts on a triangle does not meet it there.
-        """
-        rays, shape = _rays(origins, directions, tmax)
-        arrays = _hits.arrays(shape, fields, out, (of for of in rays if isinstance(of, np.ndarray)))
-        with _bar(progress) as told:
-            self._built().closest(rays, _hits.native(arrays, len(rays[0])), str(device), told)
-        return Hits(**arrays)
-
-    def any(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        *,
-        tmax: ArrayLike = np.inf,
-        device: str = "auto",
-        out: NDArray[np.bool_] | None = None,
-        progress: Progress = None,
-    ) -> NDArray[np.bool_]:
-        """Whether each ray meets anything, in an array of the rays' shape. Arguments are those of `closest`."""
-        rays, shape = _rays(origins, directions, tmax)
-        if out is None:
-            out = np.empty(shape, np.bool_)
-        elif not isinstance(out, np.ndarray) or out.dtype != np.bool_:
-            raise TypeError("out is no numpy array of bool")
-        elif out.shape != shape or not (out.flags.c_contiguous and out.flags.writeable):
-            raise ValueError(f"out has gaps, can't be written to or has not the shape {shape}")
-        with _bar(progress) as told:
-            self._built().any(rays, out.reshape(-1), str(device), told)
-        return out
 
 
 def load(path: str | os.PathLike[str], *, quality: str = "medium", threads: int = 0) -> Scene:
@@ -241,49 +285,3 @@ def _offset(meshes: list[tuple[NDArray, NDArray, NDArray | None]]) -> list[float
     size = (greatest - least).max()
     far = np.maximum(np.abs(least), np.abs(greatest)).max() > FAR * size
     return ((least + greatest) / 2).tolist() if is_double and far else [0.0, 0.0, 0.0]
-
-
-def _rays(origins: ArrayLike, directions: ArrayLike, tmax: ArrayLike) -> tuple[tuple[Any, Any, Any], tuple[int, ...]]:
-    """Rays with a row each, and the shape that callers see."""
-    starts, ways = _arrays.rows("origins", origins), _arrays.rows("directions", directions)
-    try:
-        starts, ways = np.broadcast_arrays(starts, ways)
-    except ValueError:
-        raise ValueError(f"origins {starts.shape} and directions {ways.shape} do not go together") from None
-    shape = starts.shape[:-1]
-    limits = _arrays.doubles("tmax", tmax)
-    if limits.ndim:
-        try:
-            limits = np.ascontiguousarray(np.broadcast_to(limits, shape)).reshape(-1)
-        except ValueError:
-            raise ValueError(f"tmax {limits.shape} does not go with rays {shape}") from None
-    else:
-        limits = float(limits)
-    return (starts.reshape(-1, 3), ways.reshape(-1, 3), limits), shape
-
-
-class _bar:
-    """What is told of progress: nothing, what the caller gave, or a bar of tqdm if that is installed."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress, self._tqdm = progress, None
-
-    def __enter__(self) -> Callable[[int, int], Any] | None:
-        if self._progress is None or self._progress is False:
-            return None
-        if callable(self._progress):
-            return self._progress
-        try:
-            from tqdm.auto import tqdm
-        except ImportError:
-            return None
-        self._tqdm = tqdm(unit="rays", unit_scale=True)
-        return self._told
-
-    def _told(self, done: int, count: int) -> None:
-        self._tqdm.total = count
-        self._tqdm.update(done - self._tqdm.n)
-
-    def __exit__(self, *_: object) -> None:
-        if self._tqdm is not None:
-            self._tqdm.close()

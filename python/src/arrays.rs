@@ -1,6 +1,6 @@
 //! Arrays that Python gives, as they lie in its memory.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
 use numpy::PyUntypedArrayMethods;
@@ -20,6 +20,10 @@ pub enum Rows<'py> {
 /// The same without Python.
 #[derive(Clone, Copy)]
 pub enum RowsView<'a> {
+    /// Of `f32`, one after the other.
+    Singles(&'a [[f32; 3]]),
+    /// Of `f64`, likewise.
+    Doubles(&'a [[f64; 3]]),
     /// Of `f32`.
     Single(ArrayView2<'a, f32>),
     /// Of `f64`.
@@ -32,14 +36,23 @@ impl Rows<'_> {
     /// # Errors
     /// Rows of another length.
     pub fn view(&self, name: &str) -> PyResult<RowsView<'_>> {
-        let (shape, view) = match self {
-            Rows::Single(array) => (array.shape(), RowsView::Single(array.as_array())),
-            Rows::Double(array) => (array.shape(), RowsView::Double(array.as_array())),
+        let shape = match self {
+            Rows::Single(array) => array.shape(),
+            Rows::Double(array) => array.shape(),
         };
         if shape[1] != 3 {
             return Err(PyValueError::new_err(format!("{name} has rows of {} numbers, not of three", shape[1])));
         }
-        Ok(view)
+        Ok(match self {
+            Rows::Single(array) => match array.as_slice() {
+                Ok(all) => RowsView::Singles(all.as_chunks().0),
+                Err(_) => RowsView::Single(array.as_array()),
+            },
+            Rows::Double(array) => match array.as_slice() {
+                Ok(all) => RowsView::Doubles(all.as_chunks().0),
+                Err(_) => RowsView::Double(array.as_array()),
+            },
+        })
     }
 }
 
@@ -47,14 +60,19 @@ impl RowsView<'_> {
     /// How many there are.
     pub fn len(&self) -> usize {
         match self {
+            RowsView::Singles(rows) => rows.len(),
+            RowsView::Doubles(rows) => rows.len(),
             RowsView::Single(rows) => rows.nrows(),
             RowsView::Double(rows) => rows.nrows(),
         }
     }
 
     /// Row `i`.
+    #[inline]
     pub fn row(&self, i: usize) -> DVec3 {
         match self {
+            RowsView::Singles(rows) => Vec3::from(rows[i]).as_dvec3(),
+            RowsView::Doubles(rows) => DVec3::from(rows[i]),
             RowsView::Single(rows) => DVec3::new(rows[[i, 0]].into(), rows[[i, 1]].into(), rows[[i, 2]].into()),
             RowsView::Double(rows) => DVec3::new(rows[[i, 0]], rows[[i, 1]], rows[[i, 2]]),
         }

@@ -25,3 +25,14 @@ pub fn each(
     }
     Ok(())
 }
+
+/// Lets Python be heard where `done` of `count` rays are done, while other threads may run.
+///
+/// # Errors
+/// What Python raises meanwhile.
+pub fn heard(progress: Option<&Py<PyAny>>, (done, count): (usize, usize)) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        progress.map_or(Ok(()), |progress| progress.call1(py, (done, count)).map(drop))
+    })
+}

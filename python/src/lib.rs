@@ -7,12 +7,17 @@ mod error;
 mod fields;
 mod gpu;
 mod meshes;
+mod pictures;
 mod rays;
 mod surfaces;
+mod table;
+mod told;
 
-/// Ray queries.
+/// Ray queries and pictures.
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::pictures::{Studio, png};
     #[pymodule_export]
     use super::surfaces::Surfaces;
 }

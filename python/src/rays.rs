@@ -50,17 +50,13 @@ impl<'a> Rays<'a> {
     }
 
     /// Ray `i`, moved by minus `offset`. One that is none is remembered.
+    #[inline]
     pub fn ray(&self, i: usize, offset: DVec3) -> Ray {
         let (origin, direction, tmax) = (self.origins.row(i), self.directions.row(i), self.tmax.of(i));
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO || tmax.is_nan() {
             self.fault.fetch_min(i, Ordering::Relaxed);
         }
-        Ray { origin: origin - offset, direction, length: tmax * length(direction) }
-    }
-
-    /// How long the direction of ray `i` is.
-    pub fn length(&self, i: usize) -> f64 {
-        length(self.directions.row(i))
+        Ray { origin: origin - offset, direction, tmax }
     }
 
     /// Refuses what was given if a ray was none that [`Rays::ray`] has made.
@@ -85,8 +81,40 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// The length of a vector, also where squares overflow or are lost.
-fn length(of: DVec3) -> f64 {
-    let size = of.abs().max_element();
-    if size > 0.0 && size.is_finite() { (of / size).length() * size } else { 0.0 }
+/// Points as Python gives them, and the first of them that is none.
+pub struct Points<'a> {
+    rows: RowsView<'a>,
+    fault: AtomicUsize,
+}
+
+impl<'a> Points<'a> {
+    /// Of rows.
+    pub fn new(rows: RowsView<'a>) -> Self {
+        Points { rows, fault: AtomicUsize::new(NO_FAULT) }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Point `i`, moved by minus `offset`. One that is none is remembered.
+    pub fn point(&self, i: usize, offset: DVec3) -> DVec3 {
+        let point = self.rows.row(i);
+        if !point.is_finite() {
+            self.fault.fetch_min(i, Ordering::Relaxed);
+        }
+        point - offset
+    }
+
+    /// Refuses what was given if a point was none that [`Points::point`] has told.
+    ///
+    /// # Errors
+    /// It names the first.
+    pub fn check(&self) -> PyResult<()> {
+        match self.fault.load(Ordering::Relaxed) {
+            NO_FAULT => Ok(()),
+            i => Err(PyValueError::new_err(format!("point {i} is not finite"))),
+        }
+    }
 }

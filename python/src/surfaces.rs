@@ -10,16 +10,20 @@ use eyerays::queries::Queries;
 use eyerays::scene::Scene;
 use eyerays::scene_io;
 use glam::DVec3;
-use numpy::PyReadwriteArray1;
+use numpy::{IntoPyArray, PyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
+use crate::arrays::Rows;
 use crate::blocks;
-use crate::error::raised;
-use crate::fields::{Block, Fields};
+use crate::error::{Raised, raised};
+use crate::fields::{self, Fields};
 use crate::gpu;
 use crate::meshes::{self, MeshArrays};
-use crate::rays::RayArrays;
+use crate::rays::{Points, RayArrays};
+use crate::table::Table;
+use crate::told::{Block, tell};
 
 /// Fewer rays are answered by a CPU before a GPU has them.
 const WORTH_A_GPU: usize = 1 << 16;
@@ -34,6 +38,9 @@ pub struct Surfaces {
     triangles: usize,
     #[pyo3(get)]
     objects: Vec<String>,
+    /// Of places, in the scene's units.
+    #[pyo3(get)]
+    roundoff: f64,
 }
 
 #[pymethods]
@@ -74,13 +81,87 @@ impl Surfaces {
     ) -> PyResult<()> {
         let rays = rays.view()?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
-        let mut slices = fields.slices(rays.count())?;
+        let mut columns = fields.columns(rays.count())?;
+        let progress = progress.map(|progress| progress.clone().unbind());
+        let told = py.detach(|| {
+            queries.closest_each(rays.count(), &|i| rays.ray(i, self.offset), &mut |block, hits| {
+                rays.check()?;
+                let told = Block { told: hits, offset: self.offset };
+                let rows = columns.iter_mut().map(|column| column.rows(block.clone())).collect();
+                tell(&told, 0..block.len(), rows);
+                Ok::<_, Raised>(blocks::heard(progress.as_ref(), (block.end, rays.count()))?)
+            })
+        });
+        told.map_err(|Raised(error)| error)
+    }
+
+    /// Tells where triangles come nearest to points into the arrays of `fields`; `t` is the distance.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        points: Rows<'_>,
+        mut fields: Fields<'_>,
+        device: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let points = Points::new(points.view("points")?);
+        let queries = py.detach(|| self.on(device, points.count()))?;
+        let mut columns = fields.columns(points.count())?;
+        blocks::each(py, (points.count(), queries.most_rays()), progress, |block| {
+            let start = block.start;
+            let nearest = queries.nearest(block.len(), |i| points.point(start + i, self.offset)).map_err(raised)?;
+            points.check()?;
+            let told = Block { told: &nearest, offset: self.offset };
+            let rows = columns.iter_mut().map(|column| column.rows(block.clone())).collect();
+            queries.install(|| tell(&told, 0..block.len(), rows));
+            Ok(())
+        })
+    }
+
+    /// All that rays cross: arrays of the fields that are named, by them, and how many crossings there are up to each ray.
+    fn crossings<'py>(
+        &self,
+        py: Python<'py>,
+        rays: RayArrays<'_>,
+        names: Vec<String>,
+        device: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyArray1<i64>>)> {
+        let rays = rays.view()?;
+        let queries = py.detach(|| self.on(device, rays.count()))?;
+        let mut table = Table::new(&names)?;
+        let mut ends = vec![0];
         blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
             let start = block.start;
-            let hits = queries.closest(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
+            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
             rays.check()?;
-            let lengths = |i: usize| rays.length(start + i);
-            queries.install(|| slices.tell(&Block { hits: &hits, rays: block, lengths, offset: self.offset }));
+            let before = ends[start];
+            ends.extend((0..block.len()).map(|ray| before + crossings.of_ray(ray).end as i64));
+            let told = Block { told: &crossings, offset: self.offset };
+            let columns = table.grown(crossings.len())?;
+            queries.install(|| tell(&told, 0..crossings.len(), columns));
+            Ok(())
+        })?;
+        Ok((table.finish(py)?, ends.into_pyarray(py)))
+    }
+
+    /// Tells into an array how many triangles each ray crosses.
+    fn count(
+        &self,
+        py: Python<'_>,
+        rays: RayArrays<'_>,
+        mut out: PyReadwriteArray1<'_, i32>,
+        device: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let rays = rays.view()?;
+        let queries = py.detach(|| self.on(device, rays.count()))?;
+        let out = fields::line(&mut out, rays.count())?;
+        blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
+            let start = block.start;
+            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
+            rays.check()?;
+            out[block].iter_mut().enumerate().for_each(|(ray, to)| *to = crossings.of_ray(ray).len() as i32);
             Ok(())
         })
     }
@@ -96,23 +177,26 @@ impl Surfaces {
     ) -> PyResult<()> {
         let rays = rays.view()?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
-        let out = out.as_slice_mut().ok().filter(|out| out.len() == rays.count());
-        let out = out.ok_or_else(|| PyValueError::new_err("out has gaps or another shape than the rays"))?;
-        blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
-            let start = block.start;
-            let met = queries.any(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
-            rays.check()?;
-            out[block].copy_from_slice(&met);
-            Ok(())
-        })
+        let out = fields::line(&mut out, rays.count())?;
+        let progress = progress.map(|progress| progress.clone().unbind());
+        let told = py.detach(|| {
+            queries.any_each(rays.count(), &|i| rays.ray(i, self.offset), &mut |block, met| {
+                rays.check()?;
+                out[block.clone()].copy_from_slice(met);
+                Ok::<_, Raised>(blocks::heard(progress.as_ref(), (block.end, rays.count()))?)
+            })
+        });
+        told.map_err(|Raised(error)| error)
     }
 }
 
 impl Surfaces {
     fn new(scene: &Scene, offset: DVec3, quality: &str, threads: usize) -> PyResult<Surfaces> {
         let quality: Bvh = quality.parse().map_err(raised)?;
+        let cpu = Queries::new(scene, quality, threads).map_err(raised)?;
         Ok(Surfaces {
-            cpu: Queries::new(scene, quality, threads).map_err(raised)?,
+            roundoff: cpu.roundoff(),
+            cpu,
             gpu: OnceLock::new(),
             offset,
             triangles: scene.primitives() as usize,

@@ -24,6 +24,11 @@ def test_a_gpu_answers_as_a_cpu_does():
         pytest.skip(str(error))
     for name in ("t", "triangle", "object", "uv", "normal", "point", "error"):
         assert getattr(cpu, name).tobytes() == getattr(gpu, name).tobytes(), name
+    for question in (scene.all_hits, lambda origins, directions, device: scene.closest_point(origins + directions, device=device)):
+        told = [question(origins, directions, device=device) for device in ("cpu", "gpu")]
+        for name in set(vars(told[0])):
+            assert getattr(told[0], name).tobytes() == getattr(told[1], name).tobytes(), name
+    assert np.array_equal(*(scene.count(origins, directions, device=device) for device in ("cpu", "gpu")))
     for limit in (np.inf, 1.0):
         met = [scene.any(origins, directions, tmax=limit, device=device) for device in ("cpu", "gpu")]
         assert np.array_equal(*met)

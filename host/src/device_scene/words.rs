@@ -28,7 +28,7 @@ impl PrimitiveWords {
     }
 }
 
-/// The words of all pairs of nodes, see [`eyerays_shader::scene::TraceContext::pair`], likewise.
+/// The words of all pairs of nodes, see [`eyerays_shader::scene::Hierarchy::pair`], likewise.
 pub struct NodeWords(Option<Vec<UVec4>>);
 
 impl NodeWords {

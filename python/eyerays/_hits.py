@@ -43,19 +43,12 @@ class Hits:
         raise ValueError("none of t, triangle and object was asked for, which tell of hits")
 
 
-@dataclass(frozen=True, eq=False)
-class Crossings:
-    """All that rays cross, a row each: first those of the first ray, the nearest first. What was not asked for is None; fields are those of `Hits`."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Crossings(Hits):
+    """All that rays cross, a row each: first those of the first ray, the nearest first. What was not asked for is None."""
 
     splits: NDArray[np.int64]
     """Where the rows of each ray begin, and how many rows there are: ray `i` has those from `splits[i]` to before `splits[i + 1]`."""
-    t: NDArray[np.float32] | None = None
-    triangle: NDArray[np.int32] | None = None
-    object: NDArray[np.int32] | None = None
-    uv: NDArray[np.float32] | None = None
-    normal: NDArray[np.float32] | None = None
-    point: NDArray[np.float64] | None = None
-    error: NDArray[np.float32] | None = None
 
     def __len__(self) -> int:
         return int(self.splits[-1])

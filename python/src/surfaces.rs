@@ -1,12 +1,13 @@
 //! The surfaces of a scene, which Python asks with arrays of rays.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use eyerays::error::Result;
 use eyerays::gpu::Gpu;
 use eyerays::quality::Bvh;
-use eyerays::queries::Queries;
+use eyerays::queries::{Crossings, Queries};
 use eyerays::scene::Scene;
 use eyerays::scene_io;
 use glam::DVec3;
@@ -21,7 +22,7 @@ use crate::error::{Raised, raised};
 use crate::fields::{self, Fields};
 use crate::gpu;
 use crate::meshes::{self, MeshArrays};
-use crate::rays::{Points, RayArrays};
+use crate::rays::{Points, RayArrays, Rays};
 use crate::table::Table;
 use crate::told::{Block, tell};
 
@@ -131,13 +132,10 @@ impl Surfaces {
         let queries = py.detach(|| self.on(device, rays.count()))?;
         let mut table = Table::new(&names)?;
         let mut ends = vec![0];
-        blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
-            let start = block.start;
-            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
-            rays.check()?;
-            let before = ends[start];
+        self.crossed(py, (&rays, &queries), progress, |block, crossings| {
+            let before = ends[block.start];
             ends.extend((0..block.len()).map(|ray| before + crossings.of_ray(ray).end as i64));
-            let told = Block { told: &crossings, offset: self.offset };
+            let told = Block { told: crossings, offset: self.offset };
             let columns = table.grown(crossings.len())?;
             queries.install(|| tell(&told, 0..crossings.len(), columns));
             Ok(())
@@ -157,10 +155,7 @@ impl Surfaces {
         let rays = rays.view()?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
         let out = fields::line(&mut out, rays.count())?;
-        blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
-            let start = block.start;
-            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
-            rays.check()?;
+        self.crossed(py, (&rays, &queries), progress, |block, crossings| {
             out[block].iter_mut().enumerate().for_each(|(ray, to)| *to = crossings.of_ray(ray).len() as i32);
             Ok(())
         })
@@ -201,6 +196,22 @@ impl Surfaces {
             offset,
             triangles: scene.primitives() as usize,
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
+        })
+    }
+
+    /// Tells what rays cross, block by block.
+    fn crossed(
+        &self,
+        py: Python<'_>,
+        (rays, queries): (&Rays<'_>, &Queries),
+        progress: Option<&Bound<'_, PyAny>>,
+        mut tell: impl FnMut(Range<usize>, &Crossings) -> PyResult<()> + Send,
+    ) -> PyResult<()> {
+        blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
+            let start = block.start;
+            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
+            rays.check()?;
+            tell(block, &crossings)
         })
     }
 

@@ -21,7 +21,7 @@ pub(super) struct Surfaces {
     pub job: Job,
     pub objects: ObjectNumbers,
     pub threads: rayon::ThreadPool,
-    /// What [`Surfaces::launch`] needs.
+    /// Of a launch, for [`Surfaces::primitive`].
     frame: Frame,
     spec: Specialisation,
 }

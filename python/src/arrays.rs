@@ -1,5 +1,8 @@
 //! Arrays that Python gives, as they lie in its memory.
 
+use std::ops::Range;
+
+use eyerays::batch::BLOCK;
 use glam::{DVec3, Vec3};
 use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
@@ -78,9 +81,27 @@ impl RowsView<'_> {
         }
     }
 
+    /// Some rows, less `offset`, an axis a column.
+    #[inline(always)]
+    pub fn fill(&self, range: Range<usize>, offset: DVec3, columns: &mut [[f64; BLOCK]; 3]) {
+        match self {
+            RowsView::Singles(rows) => fill(rows[range].iter().map(|row| row.map(f64::from)), offset, columns),
+            RowsView::Doubles(rows) => fill(rows[range].iter().copied(), offset, columns),
+            _ => fill(range.map(|i| self.row(i).to_array()), offset, columns),
+        }
+    }
+
     /// All rows.
     pub fn iter(&self) -> impl Iterator<Item = DVec3> + '_ {
         (0..self.len()).map(|i| self.row(i))
+    }
+}
+
+#[inline(always)]
+fn fill(rows: impl Iterator<Item = [f64; 3]>, offset: DVec3, columns: &mut [[f64; BLOCK]; 3]) {
+    let [xs, ys, zs] = columns;
+    for (((row, x), y), z) in rows.zip(xs).zip(ys).zip(zs) {
+        (*x, *y, *z) = (row[0] - offset.x, row[1] - offset.y, row[2] - offset.z);
     }
 }
 
@@ -119,7 +140,14 @@ impl Numbers<'_> {
 }
 
 impl NumbersView<'_> {
+    /// Those of some rays.
+    #[inline(always)]
+    pub fn fill(&self, range: Range<usize>, column: &mut [f64; BLOCK]) {
+        column.iter_mut().zip(range).for_each(|(to, i)| *to = self.of(i));
+    }
+
     /// That of ray `i`.
+    #[inline]
     pub fn of(&self, i: usize) -> f64 {
         match self {
             NumbersView::One(number) => *number,

@@ -1,8 +1,9 @@
 //! Rays as Python gives them.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use eyerays::batch::Ray;
+use eyerays::batch::{Ray, RayBlock, Rays};
 use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,52 +15,64 @@ use crate::arrays::{Numbers, NumbersView, Rows, RowsView};
 pub struct RayArrays<'py>(Rows<'py>, Rows<'py>, Numbers<'py>);
 
 impl RayArrays<'_> {
-    /// What is in them.
+    /// What is in them, moved by minus `offset`.
     ///
     /// # Errors
     /// Arrays of other shapes.
-    pub fn view(&self) -> PyResult<Rays<'_>> {
-        Rays::new(self)
-    }
-}
-
-/// The same without Python, and the first of them that is none.
-pub struct Rays<'a> {
-    origins: RowsView<'a>,
-    directions: RowsView<'a>,
-    tmax: NumbersView<'a>,
-    fault: AtomicUsize,
-}
-
-const NO_FAULT: usize = usize::MAX;
-
-impl<'a> Rays<'a> {
-    fn new(RayArrays(origins, directions, tmax): &'a RayArrays<'_>) -> PyResult<Self> {
+    pub fn view(&self, offset: DVec3) -> PyResult<RaysView<'_>> {
+        let RayArrays(origins, directions, tmax) = self;
         let (origins, directions) = (origins.view("origins")?, directions.view("directions")?);
         if origins.len() != directions.len() {
             let (a, b) = (origins.len(), directions.len());
             return Err(PyValueError::new_err(format!("there are {a} origins and {b} directions")));
         }
         let tmax = tmax.view("tmax", origins.len())?;
-        Ok(Rays { origins, directions, tmax, fault: AtomicUsize::new(NO_FAULT) })
+        Ok(RaysView { origins, directions, tmax, offset, fault: AtomicUsize::new(NO_FAULT) })
     }
+}
 
+/// The same without Python, and the first of them that is none.
+pub struct RaysView<'a> {
+    origins: RowsView<'a>,
+    directions: RowsView<'a>,
+    tmax: NumbersView<'a>,
+    offset: DVec3,
+    fault: AtomicUsize,
+}
+
+const NO_FAULT: usize = usize::MAX;
+
+impl Rays for RaysView<'_> {
+    /// One that is none is remembered.
+    #[inline(always)]
+    fn fill(&self, rays: Range<usize>, block: &mut RayBlock) {
+        let (start, count) = (rays.start, rays.len());
+        self.origins.fill(rays.clone(), self.offset, &mut block.origins);
+        self.directions.fill(rays.clone(), DVec3::ZERO, &mut block.directions);
+        self.tmax.fill(rays, &mut block.tmax);
+        // Without a branch a ray, as processors like it.
+        if !(0..count).fold(true, |all, row| all & is_ray(&block.ray(row))) {
+            let fault = (0..count).find(|&row| !is_ray(&block.ray(row)));
+            self.fault.fetch_min(fault.map_or(NO_FAULT, |row| start + row), Ordering::Relaxed);
+        }
+    }
+}
+
+#[inline(always)]
+fn is_ray(ray: &Ray) -> bool {
+    let Ray { origin, direction, tmax } = *ray;
+    let is_finite = |v: DVec3| v.x.is_finite() & v.y.is_finite() & v.z.is_finite();
+    let goes = (direction.x != 0.0) | (direction.y != 0.0) | (direction.z != 0.0);
+    is_finite(origin) & is_finite(direction) & goes & !tmax.is_nan()
+}
+
+impl RaysView<'_> {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.origins.len()
     }
 
-    /// Ray `i`, moved by minus `offset`. One that is none is remembered.
-    #[inline]
-    pub fn ray(&self, i: usize, offset: DVec3) -> Ray {
-        let (origin, direction, tmax) = (self.origins.row(i), self.directions.row(i), self.tmax.of(i));
-        if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO || tmax.is_nan() {
-            self.fault.fetch_min(i, Ordering::Relaxed);
-        }
-        Ray { origin: origin - offset, direction, tmax }
-    }
-
-    /// Refuses what was given if a ray was none that [`Rays::ray`] has made.
+    /// Refuses what was given if a ray was none that was made.
     ///
     /// # Errors
     /// It names the first.

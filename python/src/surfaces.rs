@@ -22,9 +22,9 @@ use crate::error::{Raised, raised};
 use crate::fields::{self, Fields};
 use crate::gpu;
 use crate::meshes::{self, MeshArrays};
-use crate::rays::{Points, RayArrays, Rays};
+use crate::rays::{Points, RayArrays, RaysView};
 use crate::table::Table;
-use crate::told::{Block, tell};
+use crate::told::Columns;
 
 /// Fewer rays are answered by a CPU before a GPU has them.
 const WORTH_A_GPU: usize = 1 << 16;
@@ -78,21 +78,12 @@ impl Surfaces {
         rays: RayArrays<'_>,
         mut fields: Fields<'_>,
         device: &str,
-        progress: Option<&Bound<'_, PyAny>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let rays = rays.view()?;
+        let rays = rays.view(self.offset)?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
-        let mut columns = fields.columns(rays.count())?;
-        let progress = progress.map(|progress| progress.clone().unbind());
-        let told = py.detach(|| {
-            queries.closest_each(rays.count(), &|i| rays.ray(i, self.offset), &mut |block, hits| {
-                rays.check()?;
-                let told = Block { told: hits, offset: self.offset };
-                let rows = columns.iter_mut().map(|column| column.rows(block.clone())).collect();
-                tell(&told, 0..block.len(), rows);
-                Ok::<_, Raised>(blocks::heard(progress.as_ref(), (block.end, rays.count()))?)
-            })
-        });
+        let columns = Columns { arrays: fields.columns(rays.count())?, offset: self.offset };
+        let told = py.detach(|| queries.closest_into(rays.count(), &rays, columns, &mut heard(&rays, progress)));
         told.map_err(|Raised(error)| error)
     }
 
@@ -107,14 +98,12 @@ impl Surfaces {
     ) -> PyResult<()> {
         let points = Points::new(points.view("points")?);
         let queries = py.detach(|| self.on(device, points.count()))?;
-        let mut columns = fields.columns(points.count())?;
+        let mut columns = Columns { arrays: fields.columns(points.count())?, offset: self.offset };
         blocks::each(py, (points.count(), queries.most_rays()), progress, |block| {
             let start = block.start;
             let nearest = queries.nearest(block.len(), |i| points.point(start + i, self.offset)).map_err(raised)?;
             points.check()?;
-            let told = Block { told: &nearest, offset: self.offset };
-            let rows = columns.iter_mut().map(|column| column.rows(block.clone())).collect();
-            queries.install(|| tell(&told, 0..block.len(), rows));
+            queries.install(|| columns.rows(&block).tell(&nearest, 0..block.len()));
             Ok(())
         })
     }
@@ -128,16 +117,16 @@ impl Surfaces {
         device: &str,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyArray1<i64>>)> {
-        let rays = rays.view()?;
+        let rays = rays.view(self.offset)?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
         let mut table = Table::new(&names)?;
         let mut ends = vec![0];
         self.crossed(py, (&rays, &queries), progress, |block, crossings| {
             let before = ends[block.start];
             ends.extend((0..block.len()).map(|ray| before + crossings.of_ray(ray).end as i64));
-            let told = Block { told: crossings, offset: self.offset };
-            let columns = table.grown(crossings.len())?;
-            queries.install(|| tell(&told, 0..crossings.len(), columns));
+            let count = crossings.hits().len();
+            let columns = Columns { arrays: table.grown(count)?, offset: self.offset };
+            queries.install(|| columns.tell(crossings, 0..count));
             Ok(())
         })?;
         Ok((table.finish(py)?, ends.into_pyarray(py)))
@@ -152,7 +141,7 @@ impl Surfaces {
         device: &str,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let rays = rays.view()?;
+        let rays = rays.view(self.offset)?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
         let out = fields::line(&mut out, rays.count())?;
         self.crossed(py, (&rays, &queries), progress, |block, crossings| {
@@ -168,20 +157,24 @@ impl Surfaces {
         rays: RayArrays<'_>,
         mut out: PyReadwriteArray1<'_, bool>,
         device: &str,
-        progress: Option<&Bound<'_, PyAny>>,
+        progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let rays = rays.view()?;
+        let rays = rays.view(self.offset)?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
         let out = fields::line(&mut out, rays.count())?;
-        let progress = progress.map(|progress| progress.clone().unbind());
-        let told = py.detach(|| {
-            queries.any_each(rays.count(), &|i| rays.ray(i, self.offset), &mut |block, met| {
-                rays.check()?;
-                out[block.clone()].copy_from_slice(met);
-                Ok::<_, Raised>(blocks::heard(progress.as_ref(), (block.end, rays.count()))?)
-            })
-        });
+        let told = py.detach(|| queries.any_into(rays.count(), &rays, out, &mut heard(&rays, progress)));
         told.map_err(|Raised(error)| error)
+    }
+}
+
+/// Refuses rays that are none, and lets Python be heard.
+fn heard<'a>(
+    rays: &'a RaysView<'_>,
+    progress: Option<Py<PyAny>>,
+) -> impl FnMut(usize) -> std::result::Result<(), Raised> + Send + 'a {
+    move |done| {
+        rays.check()?;
+        Ok(blocks::heard(progress.as_ref(), (done, rays.count()))?)
     }
 }
 
@@ -203,13 +196,12 @@ impl Surfaces {
     fn crossed(
         &self,
         py: Python<'_>,
-        (rays, queries): (&Rays<'_>, &Queries),
+        (rays, queries): (&RaysView<'_>, &Queries),
         progress: Option<&Bound<'_, PyAny>>,
         mut tell: impl FnMut(Range<usize>, &Crossings) -> PyResult<()> + Send,
     ) -> PyResult<()> {
         blocks::each(py, (rays.count(), queries.most_rays()), progress, |block| {
-            let start = block.start;
-            let crossings = queries.crossings(block.len(), |i| rays.ray(start + i, self.offset)).map_err(raised)?;
+            let crossings = queries.crossings(block.clone(), rays).map_err(raised)?;
             rays.check()?;
             tell(block, &crossings)
         })

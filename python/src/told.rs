@@ -2,66 +2,13 @@
 
 use std::ops::Range;
 
-use eyerays::batch::Hit;
-use eyerays::queries::{Crossings, Hits, Nearest, Place};
+use eyerays::queries::{Answered, Hits, Place, Sink, Split};
 use glam::{DVec3, Vec3};
 
-/// Hits by their numbers.
-pub trait Told: Sync {
-    /// What was met, with its distance.
-    fn hit(&self, row: usize) -> Option<Hit>;
-    /// The object, and which of its triangles.
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)>;
-    /// Where.
-    fn place(&self, row: usize) -> Option<Place>;
-}
-
-impl Told for Hits {
-    fn hit(&self, row: usize) -> Option<Hit> {
-        Hits::hit(self, row)
-    }
-
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        Hits::surface(self, hit)
-    }
-
-    fn place(&self, row: usize) -> Option<Place> {
-        Hits::place(self, row)
-    }
-}
-
-impl Told for Nearest {
-    fn hit(&self, row: usize) -> Option<Hit> {
-        Nearest::hit(self, row)
-    }
-
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        Nearest::surface(self, hit)
-    }
-
-    fn place(&self, row: usize) -> Option<Place> {
-        Nearest::place(self, row)
-    }
-}
-
-impl Told for Crossings {
-    fn hit(&self, row: usize) -> Option<Hit> {
-        Crossings::hit(self, row)
-    }
-
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        Crossings::surface(self, hit)
-    }
-
-    fn place(&self, row: usize) -> Option<Place> {
-        Crossings::place(self, row)
-    }
-}
-
-/// Hits, and where they are told of.
-pub struct Block<'a, T> {
-    /// What has been met.
-    pub told: &'a T,
+/// Arrays of fields, and what is added to places.
+pub struct Columns<'a> {
+    /// The arrays, all as long.
+    pub arrays: Vec<Column<'a>>,
     /// What is added to places.
     pub offset: DVec3,
 }
@@ -108,19 +55,7 @@ macro_rules! rows {
     };
 }
 
-/// What is told of a row.
-struct Row {
-    t: f64,
-    uv: [f32; 2],
-    /// The object, and which of its triangles.
-    surface: (i64, i64),
-    place: Place,
-}
-
 const NOWHERE: Place = Place { point: DVec3::NAN, normal: Vec3::NAN, error: f64::NAN };
-/// Rows that a thread fills.
-const TASK: usize = 2048;
-
 impl Column<'_> {
     /// Some of the rows.
     pub fn rows(&mut self, range: Range<usize>) -> Column<'_> {
@@ -132,62 +67,84 @@ impl Column<'_> {
         rows!(self, rows => <[_; 2]>::from(rows.split_at_mut(at)))
     }
 
-    fn needs_surface(&self) -> bool {
-        use Column::{LongObject, LongTriangle, Object, Triangle};
-        matches!(self, Triangle(_) | LongTriangle(_) | Object(_) | LongObject(_))
-    }
-
     fn needs_place(&self) -> bool {
         matches!(self, Column::Normal(_) | Column::Point(_) | Column::Error(_))
     }
 
-    fn set(&mut self, to: usize, row: &Row) {
+    /// Fills the rows with what is told of neighbours, the first of which is `start`, and of their places if these are needed.
+    fn fill(self, answers: &impl Answered, start: usize, places: &[Place]) {
+        let t = |i| answers.hit(i).map_or(f64::INFINITY, |hit| hit.t);
+        // What is met is not infinitely far.
+        let short = |i| answers.hit(i).map_or(f32::INFINITY, |hit| hit.t.min(f32::MAX.into()) as f32);
+        let surface = |i| answers.hit(i).map(|hit| answers.surface(&hit).unwrap_or_default());
+        let object = |i| surface(i).map_or(-1, |(object, _)| i64::from(object));
+        let triangle = |i| surface(i).map_or(-1, |(_, triangle)| i64::from(triangle));
+        let uv = |i| answers.hit(i).map_or([f32::NAN; 2], |hit| hit.coordinates);
         match self {
-            // What is met is not infinitely far.
-            Column::T(rows) if row.t.is_finite() => rows[to] = row.t.min(f32::MAX.into()) as f32,
-            Column::T(rows) => rows[to] = f32::INFINITY,
-            Column::LongT(rows) => rows[to] = row.t,
-            Column::Triangle(rows) => rows[to] = row.surface.1 as i32,
-            Column::LongTriangle(rows) => rows[to] = row.surface.1,
-            Column::Object(rows) => rows[to] = row.surface.0 as i32,
-            Column::LongObject(rows) => rows[to] = row.surface.0,
-            Column::Uv(rows) => rows[to] = row.uv,
-            Column::Normal(rows) => rows[to] = row.place.normal.to_array(),
-            Column::Point(rows) => rows[to] = row.place.point.to_array(),
-            Column::Error(rows) => rows[to] = row.place.error as f32,
+            Column::T(rows) => set(rows, start.., short),
+            Column::LongT(rows) => set(rows, start.., t),
+            Column::Triangle(rows) => set(rows, start.., |i| triangle(i) as i32),
+            Column::LongTriangle(rows) => set(rows, start.., triangle),
+            Column::Object(rows) => set(rows, start.., |i| object(i) as i32),
+            Column::LongObject(rows) => set(rows, start.., object),
+            Column::Uv(rows) => set(rows, start.., uv),
+            Column::Normal(rows) => set(rows, places, |place| place.normal.to_array()),
+            Column::Point(rows) => set(rows, places, |place| place.point.to_array()),
+            Column::Error(rows) => set(rows, places, |place| place.error as f32),
         }
     }
 }
 
-/// Tells so many rows of a block into columns that are as long.
-pub fn tell<T: Told>(block: &Block<'_, T>, rows: Range<usize>, mut columns: Vec<Column<'_>>) {
-    if rows.len() > TASK {
-        let (half, middle) = (rows.len() / 2, rows.start + rows.len() / 2);
-        let (first, second) = columns.into_iter().map(|column| <(_, _)>::from(column.split(half))).unzip();
-        let (before, after) = (rows.start..middle, middle..rows.end);
-        rayon::join(|| tell(block, before, first), || tell(block, after, second));
-        return;
+#[inline]
+fn set<T, F>(rows: &mut [T], of: impl IntoIterator<Item = F>, value: impl Fn(F) -> T) {
+    rows.iter_mut().zip(of).for_each(|(to, of)| *to = value(of));
+}
+
+/// Rows that a thread fills.
+const TASK: usize = 2048;
+
+impl Columns<'_> {
+    /// Some of the rows.
+    pub fn rows(&mut self, range: &Range<usize>) -> Columns<'_> {
+        let arrays = self.arrays.iter_mut().map(|column| column.rows(range.clone())).collect();
+        Columns { arrays, offset: self.offset }
     }
-    let surfaces = columns.iter().any(Column::needs_surface);
-    let places = columns.iter().any(Column::needs_place);
-    for (to, row) in rows.enumerate() {
-        let row = block.row(row, surfaces, places);
-        columns.iter_mut().for_each(|column| column.set(to, &row));
+
+    /// Tells so many answers, a row each, with many threads.
+    pub fn tell(self, answers: &impl Answered, range: Range<usize>) {
+        if range.len() <= TASK {
+            return self.tell_here(answers, range);
+        }
+        let (half, middle) = (range.len() / 2, range.start + range.len() / 2);
+        let (first, second) = self.split_at(half);
+        let (before, after) = (range.start..middle, middle..range.end);
+        rayon::join(|| first.tell(answers, before), || second.tell(answers, after));
+    }
+
+    fn tell_here(self, answers: &impl Answered, range: Range<usize>) {
+        let has_places = self.arrays.iter().any(Column::needs_place);
+        let (start, placed) = (range.start, if has_places { range } else { 0..0 });
+        let places: Vec<Place> = placed.map(|number| self.place(answers, number)).collect();
+        self.arrays.into_iter().for_each(|column| column.fill(answers, start, &places));
+    }
+
+    fn place(&self, answers: &impl Answered, number: usize) -> Place {
+        let place = answers.place(number).unwrap_or(NOWHERE);
+        Place { point: place.point + self.offset, ..place }
     }
 }
 
-impl<T: Told> Block<'_, T> {
-    fn row(&self, row: usize, surfaces: bool, places: bool) -> Row {
-        let Some(hit) = self.told.hit(row) else {
-            return Row { t: f64::INFINITY, uv: [f32::NAN; 2], surface: (-1, -1), place: NOWHERE };
-        };
-        let surface = if surfaces { self.told.surface(&hit).unwrap_or_default() } else { (0, 0) };
-        let place = if places { self.told.place(row).unwrap_or(NOWHERE) } else { NOWHERE };
-        Row {
-            t: hit.t,
-            uv: hit.coordinates,
-            surface: (surface.0.into(), surface.1.into()),
-            place: Place { point: place.point + self.offset, ..place },
-        }
+impl Split for Columns<'_> {
+    fn split_at(self, rows: usize) -> (Self, Self) {
+        let offset = self.offset;
+        let (first, second) = self.arrays.into_iter().map(|column| <(_, _)>::from(column.split(rows))).unzip();
+        (Columns { arrays: first, offset }, Columns { arrays: second, offset })
+    }
+}
+
+impl Sink<Hits<'_>> for Columns<'_> {
+    fn take(self, hits: &Hits<'_>) {
+        let all = 0..hits.len();
+        self.tell_here(hits, all);
     }
 }

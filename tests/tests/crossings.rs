@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use eyerays::batch::Ray;
 use eyerays::gpu::AdapterRequest;
 use eyerays::quality::Bvh;
-use eyerays::queries::{Crossings, Queries};
+use eyerays::queries::{Answered, Crossings, Queries};
 use eyerays::scene::{Instance, Material, Mesh, Object, Primitives, Scene, SharedMesh};
 use eyerays_tests::gpu;
 use eyerays_tests::random::Random;
@@ -109,7 +109,7 @@ fn counts(crossings: &Crossings, rays: usize) -> Vec<usize> {
 }
 
 fn crossings(scene: &Scene, quality: Bvh, rays: &[Ray]) -> Crossings {
-    Queries::new(scene, quality, 0).unwrap().crossings(rays.len(), |i| rays[i]).unwrap()
+    Queries::new(scene, quality, 0).unwrap().crossings(0..rays.len(), &|i: usize| rays[i]).unwrap()
 }
 
 const INSIDE: [DVec3; 4] = [
@@ -265,7 +265,7 @@ fn every_device_and_hierarchy_has_the_same_crossings_and_copies_are_closed() {
     rays.extend(of_vertices);
     let queries = Queries::new(&scene, Bvh::Fast, 0).unwrap();
     let all = |queries: &Queries| {
-        let found = queries.crossings(rays.len(), |i| rays[i]).unwrap();
+        let found = queries.crossings(0..rays.len(), &|i: usize| rays[i]).unwrap();
         (0..rays.len())
             .map(|ray| found.of_ray(ray).map(|i| (found.hit(i), found.place(i))).collect::<Vec<_>>())
             .collect::<Vec<_>>()

@@ -2,7 +2,7 @@
 
 use eyerays::gpu::AdapterRequest;
 use eyerays::quality::Bvh;
-use eyerays::queries::{Nearest, Queries};
+use eyerays::queries::{Answered, Nearest, Queries};
 use eyerays::scene::{Instance, Material, Mesh, Scene, SharedMesh};
 use eyerays_tests::gpu;
 use eyerays_tests::random::Random;

@@ -1,9 +1,9 @@
 //! Rays of one's own meet the surfaces of a scene, whatever these are made of, at the places that are told.
 
-use eyerays::batch::Ray;
+use eyerays::batch::{Hit, Ray};
 use eyerays::gpu::AdapterRequest;
 use eyerays::quality::Bvh;
-use eyerays::queries::{Hits, Place, Queries};
+use eyerays::queries::{Place, Queries};
 use eyerays::scene::{Primitives, Scene};
 use eyerays_tests::random::Random;
 use eyerays_tests::{gpu, shipped};
@@ -28,7 +28,7 @@ fn rays(scene: &Scene) -> Vec<Ray> {
 /// Glass, spheres, holes of pictures, copies of meshes and what is hidden from some.
 const SCENES: [&str; 6] = ["glass", "whitted", "frosted", "finishes", "subdivision", "room"];
 
-fn asked(queries: &Queries, rays: &[Ray]) -> (Hits, Vec<bool>) {
+fn asked(queries: &Queries, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
     let of = |i: usize| rays[i];
     (queries.closest(rays.len(), of).unwrap(), queries.any(rays.len(), of).unwrap())
 }
@@ -40,12 +40,12 @@ fn anything_is_met_where_something_is_met_first() {
         let rays = rays(&scene);
         let queries = Queries::new(&scene, Bvh::Medium, 0).unwrap();
         let (hits, any) = asked(&queries, &rays);
-        let met: Vec<bool> = (0..RAYS).map(|i| hits.hit(i).is_some()).collect();
+        let met: Vec<bool> = hits.iter().map(Option::is_some).collect();
         assert!(met == any, "{name}");
         let count = met.iter().filter(|&&met| met).count();
         assert!((RAYS / 50..=RAYS).contains(&count), "{name}: {count}");
         // And nothing before what is met first, but for the last bits of single precision.
-        let before = |i: usize| Ray { tmax: hits.hit(i).map_or(0.0, |hit| hit.t * (1.0 - 1e-5)), ..rays[i] };
+        let before = |i: usize| Ray { tmax: hits[i].map_or(0.0, |hit| hit.t * (1.0 - 1e-5)), ..rays[i] };
         let early = queries.any(RAYS, before).unwrap();
         assert!(early.iter().all(|early| !early), "{name}");
     }
@@ -56,11 +56,13 @@ fn places_are_on_the_triangles_and_along_the_rays() {
     for name in SCENES {
         let scene = shipped(name).flattened();
         let rays = rays(&scene);
-        let (hits, _) = asked(&Queries::new(&scene, Bvh::Medium, 0).unwrap(), &rays);
+        let queries = Queries::new(&scene, Bvh::Medium, 0).unwrap();
+        let (hits, _) = asked(&queries, &rays);
         let mut seen = 0;
         for (i, ray) in rays.iter().enumerate() {
-            let Some((hit, at)) = hits.hit(i).zip(hits.place(i)) else { continue };
-            let (object, within) = hits.surface(&hit).expect("all are of objects");
+            let Some(hit) = hits[i] else { continue };
+            let at = queries.place(&hit).expect("it is somewhere");
+            let (object, within) = queries.surface(&hit).expect("all are of objects");
             let Primitives::Triangles(range) = &scene.objects[object as usize].primitives else { continue };
             assert_eq!(range.start + within as usize, hit.primitive as usize, "{name}");
             let [a, b, c] = scene.mesh.triangles[hit.primitive as usize]
@@ -89,9 +91,10 @@ fn a_gpu_has_the_same_answers() {
         let rays = rays(&scene);
         let cpu = Queries::new(&scene, Bvh::Fast, 0).unwrap();
         let ((hits, any), (others, other)) = (asked(&cpu, &rays), asked(&cpu.on(&gpu).unwrap(), &rays));
+        let place = |hit: &Option<Hit>| hit.as_ref().and_then(|hit| cpu.place(hit));
         assert!(any == other, "{name}");
         for i in 0..RAYS {
-            assert_eq!((hits.hit(i), hits.place(i)), (others.hit(i), others.place(i)), "{name}, ray {i}");
+            assert_eq!((hits[i], place(&hits[i])), (others[i], place(&others[i])), "{name}, ray {i}");
         }
     }
 }
@@ -100,5 +103,5 @@ fn a_gpu_has_the_same_answers() {
 fn no_rays_have_no_answers() {
     let queries = Queries::new(&shipped("cornell"), Bvh::Fast, 1).unwrap();
     let (hits, any) = asked(&queries, &[]);
-    assert!(hits.hit(0).is_none() && hits.place(0).is_none() && any.is_empty());
+    assert!(hits.is_empty() && any.is_empty());
 }

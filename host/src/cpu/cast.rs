@@ -1,20 +1,23 @@
 //! Streams of rays on the CPU.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use eyerays_kernels_cpu::{Isa, Number, Query};
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{Found, SHADOWED, ShadowInputs};
+use eyerays_shader::stage::{Found, ShadowInputs};
+use glam::UVec4;
 use rayon::prelude::*;
 
 use super::pool::pool;
+use crate::batch::{Measure, Placed, Rays, place};
 use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::job::Job;
 use crate::method::{Method, Traversal};
-use crate::stream::{Answers, Question, Stream, StreamRay};
+use crate::stream::{Answers, Question, Stream, records};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
 const TASK: usize = 1024;
@@ -61,7 +64,7 @@ fn cast_here(isa: Isa, packed: &Job, traversal: Traversal, stream: &Stream, ques
             let start = Instant::now();
             trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), &mut hits);
             let time = start.elapsed();
-            (Answers::Closest(records::<f32>(&geometry, &hits)), time)
+            (Answers::Closest(of_all::<f32>(&geometry, &hits)), time)
         }
         Question::Occlusion => {
             let mut shadows = vec![0; stream.len()];
@@ -74,58 +77,55 @@ fn cast_here(isa: Isa, packed: &Job, traversal: Traversal, stream: &Stream, ques
     }
 }
 
-/// The closest hits of rays that are made, followed and told of a task at a time, with the threads that it is called in: what lies
-/// between stays in a core's cache.
-pub(crate) fn closest_here<M: Send, T: Send>(
-    packed: &Job,
-    method: Method,
-    rays: impl Fn(usize) -> (StreamRay, M) + Sync,
-    answers: &mut [T],
-    tell: impl Fn(&M, &Found<f32>) -> T + Sync,
-) {
-    by_tasks((packed, method), rays, answers, |geometry, (slots, stream, measures), answers| {
-        let mut found = vec![Found::nothing(); slots.len()];
-        let query = Query::Trace(stream.words(), &mut found);
-        f32::follow(Isa::best(), method.way(), geometry, slots, query);
-        answers
-            .iter_mut()
-            .zip(measures.iter().zip(&found))
-            .for_each(|(to, (measure, found))| *to = tell(measure, found));
-    });
-}
+/// A scene through which rays are followed by whoever asks, some neighbours at a time.
+pub(crate) struct Follower(SceneView);
 
-/// Likewise whether rays meet anything.
-pub(crate) fn any_here(packed: &Job, method: Method, rays: impl Fn(usize) -> StreamRay + Sync, answers: &mut [bool]) {
-    let rays = |i| (rays(i), ());
-    by_tasks((packed, method), rays, answers, |geometry, (slots, stream, _), answers| {
-        let mut shadows = vec![0; slots.len()];
-        let asking = ShadowInputs { lights: &[], paths: stream.words(), hits: &[] };
-        f32::follow(Isa::best(), method.way(), geometry, slots, Query::Shadow(asking, 0, &mut shadows));
-        answers.iter_mut().zip(shadows).for_each(|(to, shadow)| *to = shadow == SHADOWED);
-    });
-}
+impl Follower {
+    /// By a method.
+    pub fn new(packed: &Job, method: Method) -> Self {
+        Follower(SceneView::new(packed, method.into()))
+    }
 
-/// The rays of a task: their numbers, themselves, and what else there is of each.
-type TaskRays<'a, M> = (&'a [u32], &'a Stream, &'a [M]);
+    /// Shows how far the rays are moved and the records of what each meets first.
+    pub fn closest(&self, rays: &impl Rays, range: Range<usize>, look: impl FnOnce(&[Measure], (&[UVec4], &[UVec4]))) {
+        self.follow(rays, range, |geometry, slots, stream, measures| {
+            let mut found = vec![Found::nothing(); slots.len()];
+            f32::follow(Isa::best(), self.0.traversal.method.way(), geometry, slots, Query::Trace(stream, &mut found));
+            let (records, copies): (Vec<_>, Vec<_>) = found.iter().map(records).unzip();
+            let has_copies = !self.0.job.instances().is_empty();
+            look(measures, (&records, if has_copies { &copies } else { &[] }));
+        });
+    }
 
-fn by_tasks<M: Send, T: Send>(
-    (packed, method): (&Job, Method),
-    rays: impl Fn(usize) -> (StreamRay, M) + Sync,
-    answers: &mut [T],
-    work: impl Fn(&TraceContext<'_>, TaskRays<'_, M>, &mut [T]) + Sync,
-) {
-    let laid = SceneView::new(packed, method.into());
-    answers.par_chunks_mut(TASK).enumerate().with_max_len(1).for_each(|(number, answers)| {
-        let (first, frame) = (number * TASK, packed.stream_frame(answers.len()));
-        let mut more = Vec::with_capacity(answers.len());
-        let stream = Stream::new((0..answers.len()).map(|i| {
-            let (ray, of_ray) = rays(first + i);
-            more.push(of_ray);
-            ray
-        }));
-        let slots: Vec<u32> = (0..answers.len() as u32).collect();
-        work(&laid.stream(&frame), (&slots, &stream, &more), answers);
-    });
+    /// Shows whether the rays meet anything, as [`Answers::Occlusion`] has it.
+    pub fn any(&self, rays: &impl Rays, range: Range<usize>, look: impl FnOnce(&[u32])) {
+        self.follow(rays, range, |geometry, slots, stream, _| {
+            let mut shadows = vec![0; slots.len()];
+            let asking = ShadowInputs { lights: &[], paths: stream, hits: &[] };
+            f32::follow(
+                Isa::best(),
+                self.0.traversal.method.way(),
+                geometry,
+                slots,
+                Query::Shadow(asking, 0, &mut shadows),
+            );
+            look(&shadows);
+        });
+    }
+
+    fn follow(
+        &self,
+        rays: &impl Rays,
+        range: Range<usize>,
+        work: impl FnOnce(&TraceContext<'_>, &[u32], &[UVec4], &[Measure]),
+    ) {
+        let count = range.len();
+        let (mut words, mut measures) = (vec![UVec4::ZERO; 2 * count], vec![Measure::default(); count]);
+        let (firsts, seconds) = words.split_at_mut(count);
+        place(self.0.job.normalisation(), rays, range, Placed { firsts, seconds, measures: &mut measures });
+        let slots: Vec<u32> = (0..count as u32).collect();
+        work(&self.0.stream(&self.0.job.stream_frame(count)), &slots, &words, &measures);
+    }
 }
 
 /// The next crossings of some rays of a stream, each past the one that is told of it, likewise.
@@ -160,11 +160,11 @@ where
     let mut hits = vec![Found::<R>::nothing(); stream.len()];
     let (method, geometry) = (traversal.method, laid.stream(&frame));
     pool(threads)?.install(|| trace::<R>(Isa::best(), method, &geometry, &slots, &rays, &mut hits));
-    Ok(records(&geometry, &hits))
+    Ok(of_all(&geometry, &hits))
 }
 
 /// Hits as they lie in memory.
-fn records<R: Number>(geometry: &TraceContext<'_>, hits: &[Found<R>]) -> Vec<R::Record> {
+fn of_all<R: Number>(geometry: &TraceContext<'_>, hits: &[Found<R>]) -> Vec<R::Record> {
     let rows = Found::<R>::records(geometry.base.spec.effects) as usize;
     let mut records = vec![R::Record::default(); rows * hits.len()];
     for (slot, hit) in hits.iter().enumerate() {

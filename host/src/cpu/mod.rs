@@ -11,7 +11,7 @@ mod watched;
 
 pub use eyerays_kernels_cpu::{Isa, Number, Records};
 
-pub(crate) use cast::{any_here, closest_here, cross_here, nearest_here};
+pub(crate) use cast::{Follower, cross_here, nearest_here};
 pub use cast::{cast, cast_by, closest};
 pub(crate) use enclosing::enclosing;
 pub use pool::pool;

@@ -45,7 +45,7 @@ pub use feature::Feature;
 pub use hierarchy::hierarchy;
 pub use lighting::Lighting;
 pub use normalisation::Normalisation;
-pub(crate) use normalisation::flushed;
+pub(crate) use normalisation::{flushed, flushed_number};
 pub(crate) use tangents::made_tangents;
 pub use textures::Textures;
 pub use view::SceneView;

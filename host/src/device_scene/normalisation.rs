@@ -35,6 +35,7 @@ impl Normalisation {
     }
 
     /// A place in the normalised scene, which for a vertex or a center is exact.
+    #[inline(always)]
     pub fn exactly(&self, p: DVec3) -> DVec3 {
         (p - self.origin.as_dvec3()) * self.scale
     }
@@ -91,7 +92,8 @@ pub(crate) fn flushed(v: Vec3) -> Vec3 {
     Vec3::from_array(v.to_array().map(flushed_number))
 }
 
-pub(super) fn flushed_number(x: f32) -> f32 {
+#[inline(always)]
+pub(crate) fn flushed_number(x: f32) -> f32 {
     if x.abs() < TINY { 0.0 } else { x }
 }
 

@@ -50,6 +50,20 @@ pub struct Cast {
     pub(super) count: u32,
 }
 
+impl Cast {
+    /// Records a dispatch.
+    pub(super) fn dispatch(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (kernel, group): (&Kernel, &wgpu::BindGroup),
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        encoder.clear_buffer(self.buffers.of(binding::COUNTERS), 0, None);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+        kernel.run(&mut pass, group, self.count.min(ROW), self.count.div_ceil(ROW));
+    }
+}
+
 impl Caster {
     /// Uploads a scene with all hierarchies that it has and its triangles in a layout.
     ///
@@ -141,10 +155,11 @@ impl Caster {
 
     /// Dispatches one after the other in a submission, and what each took.
     fn batch(&self, cast: &Cast, kernel: &Kernel, count: u32) -> Result<Vec<Duration>> {
+        let group = self.group(cast, kernel);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         for pass in 0..count {
             let timestamp_writes = self.timer.as_ref().map(|timer| timer.writes(pass));
-            self.dispatch(&mut encoder, cast, kernel, timestamp_writes);
+            cast.dispatch(&mut encoder, (kernel, &group), timestamp_writes);
         }
         if let Some(timer) = &self.timer {
             timer.resolve(&mut encoder, count);
@@ -156,18 +171,9 @@ impl Caster {
         }
     }
 
-    /// Records a dispatch.
-    pub(super) fn dispatch(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        cast: &Cast,
-        kernel: &Kernel,
-        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
-    ) {
-        let group = kernel.group(&self.gpu, |own| self.scene.find(own).or_else(|| cast.buffers.find(own, false)));
-        encoder.clear_buffer(cast.buffers.of(binding::COUNTERS), 0, None);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-        kernel.run(&mut pass, &group, cast.count.min(ROW), cast.count.div_ceil(ROW));
+    /// What a kernel takes of the scene and of a stream.
+    pub(super) fn group(&self, cast: &Cast, kernel: &Kernel) -> wgpu::BindGroup {
+        kernel.group(&self.gpu, |own| self.scene.find(own).or_else(|| cast.buffers.find(own, false)))
     }
 
     /// The next crossing of each ray of a stream, past the one that is told of it.

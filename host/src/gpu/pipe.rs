@@ -1,10 +1,9 @@
 //! Rays through a GPU, chunk after chunk: while one is traced, the next is packed and the one before is told of.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
-use eyerays_shader::data::pack;
 use eyerays_shader::resources::binding;
 use glam::UVec4;
 use rayon::prelude::*;
@@ -13,21 +12,21 @@ use wgpu::BufferUsages as Use;
 use super::cast::{Cast, Caster};
 use super::kernel::Kernel;
 use super::readback::Readback;
-use crate::batch::Measure;
+use crate::batch::{Measure, Placed, Rays, place};
 use crate::error::{Error, Result};
 use crate::method::Traversal;
-use crate::stream::{Question, StreamRay};
+use crate::stream::Question;
 
 /// Rays of a chunk.
-const CHUNK: usize = 1 << 19;
+const CHUNK: usize = 1 << 18;
 /// Rays that a thread packs at once, whose records are in its nearest cache. Chunks are filled up to whole pieces by rays that meet nothing.
 const PIECE: usize = 1 << 8;
 /// Pieces that are worth a thread.
 const PIECES: usize = 8;
 /// Bytes of half of their records.
 const BYTES: usize = 16 * PIECE;
-/// Chunks on their way at once.
-const LANES: usize = 3;
+/// Chunks on their way at once: one is written, one is sent, one is traced and one is told of.
+const LANES: usize = 4;
 
 /// What a chunk takes of memory on both sides. To take it takes longer than to trace a million rays, so a caster keeps it.
 pub(super) struct Lane {
@@ -35,8 +34,21 @@ pub(super) struct Lane {
     upload: wgpu::Buffer,
     back: Readback,
     measures: Vec<Measure>,
+    groups: HashMap<Question, wgpu::BindGroup>,
+    /// What is in it: rays, and as many that the GPU has.
+    rays: Range<usize>,
+    row: usize,
     /// What is on its way.
-    sent: Option<(Range<usize>, wgpu::SubmissionIndex)>,
+    sent: Option<wgpu::SubmissionIndex>,
+}
+
+/// What the rays of a call are asked.
+struct Asking {
+    question: Question,
+    kernel: Arc<Kernel>,
+    /// Where the answers are, and their bytes.
+    binding: u32,
+    bytes: u64,
 }
 
 /// What rays have found, by their numbers in the chunk.
@@ -52,61 +64,85 @@ pub(crate) struct Chunk<'a> {
 }
 
 /// Who is told of chunks.
-pub(crate) type Tell<'t, E> = dyn FnMut(Chunk<'_>) -> std::result::Result<(), E> + 't;
+pub(crate) type Tell<'t, E> = dyn FnMut(Chunk<'_>) -> std::result::Result<(), E> + Send + 't;
 
 impl Caster {
-    /// Answers a question of `count` rays that are made as they are needed, told of in their order.
+    /// Answers a question of `count` rays, told of in their order.
     ///
     /// # Errors
     /// What the GPU reports, or who is told.
-    pub(crate) fn ask<E: From<Error>>(
+    pub(crate) fn ask<E: From<Error> + Send>(
         &self,
         question: Question,
-        count: usize,
-        ray: &(impl Fn(usize) -> (StreamRay, Measure) + Sync),
+        (count, rays): (usize, &impl Rays),
         tell: &mut Tell<'_, E>,
     ) -> std::result::Result<(), E> {
-        let kernel = self.kernel(true, Traversal::default(), question)?;
-        let answer = match question {
-            Question::Closest => (binding::HITS, 16 * self.rows()),
-            Question::Occlusion => (binding::SHADOWS, 4),
-        };
-        let mut lanes = self.lanes(count)?;
-        // The one that was sent first is the next.
+        let asking = self.asking(question)?;
+        let mut free = self.lanes(count)?;
+        let (mut written, mut sent): (Option<Lane>, VecDeque<Lane>) = (None, VecDeque::new());
         for start in (0..count).step_by(CHUNK) {
-            let mut lane = lanes.pop_front().expect("there is a lane for a ray");
-            self.receive(&mut lane, answer, tell)?;
-            let rays = start..count.min(start + CHUNK);
-            let row = rays.len().next_multiple_of(PIECE);
-            self.write(&mut lane, (rays.clone(), row), ray)?;
-            self.send(&kernel, &mut lane, (rays, row), answer);
-            lanes.push_back(lane);
+            let mut lane = free.pop().expect("a lane is told of before the next is written");
+            // While the rays of a chunk are written, those before it are sent, and others told of.
+            let (write, others) = rayon::join(
+                || self.write(&mut lane, start..count.min(start + CHUNK), rays),
+                || -> std::result::Result<(), E> {
+                    if let Some(mut lane) = written.take() {
+                        self.send(&asking, &mut lane);
+                        sent.push_back(lane);
+                    }
+                    if free.is_empty()
+                        && let Some(mut lane) = sent.pop_front()
+                    {
+                        self.receive(&asking, &mut lane, tell)?;
+                        free.push(lane);
+                    }
+                    Ok(())
+                },
+            );
+            write?;
+            others?;
+            written = Some(lane);
         }
-        for lane in &mut lanes {
-            self.receive(lane, answer, tell)?;
+        if let Some(mut lane) = written {
+            self.send(&asking, &mut lane);
+            sent.push_back(lane);
+        }
+        for mut lane in sent {
+            self.receive(&asking, &mut lane, tell)?;
+            free.push(lane);
         }
         // Of a call that fails they are thrown away, with what is on its way.
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(lanes);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(free);
         Ok(())
     }
 
+    fn asking(&self, question: Question) -> Result<Asking> {
+        let kernel = self.kernel(true, Traversal::default(), question)?;
+        let (binding, bytes) = match question {
+            Question::Closest => (binding::HITS, 16 * self.rows()),
+            Question::Occlusion => (binding::SHADOWS, 4),
+        };
+        Ok(Asking { question, kernel, binding, bytes })
+    }
+
     /// As many lanes as so many rays fill.
-    fn lanes(&self, count: usize) -> Result<VecDeque<Lane>> {
+    fn lanes(&self, count: usize) -> Result<Vec<Lane>> {
         let (wanted, most) = (count.div_ceil(CHUNK).min(LANES), count.min(CHUNK).next_multiple_of(PIECE));
-        let mut lanes: VecDeque<Lane> = {
+        let mut lanes: Vec<Lane> = {
             let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
             idle.retain(|lane| lane.measures.len() >= most);
             let kept = idle.len().min(wanted);
             idle.drain(..kept).collect()
         };
         while lanes.len() < wanted {
-            lanes.push_back(self.lane(most)?);
+            lanes.push(self.lane(most)?);
         }
         Ok(lanes)
     }
 
     fn lane(&self, most: usize) -> Result<Lane> {
-        let cast = self.room(most)?;
+        // Its frame is still to be written.
+        let cast = Cast { count: 0, ..self.room(most)? };
         let upload = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rays"),
             size: 32 * most as u64,
@@ -115,29 +151,31 @@ impl Caster {
         });
         let back = Readback::new(&self.gpu, 16 * self.rows() * most as u64);
         self.gpu.check()?;
-        Ok(Lane { cast, upload, back, measures: vec![Measure::default(); most], sent: None })
+        let measures = vec![Measure::default(); most];
+        Ok(Lane { cast, upload, back, measures, groups: HashMap::new(), rays: 0..0, row: 0, sent: None })
     }
 
     /// Asks the GPU what was written.
-    fn send(&self, kernel: &Kernel, lane: &mut Lane, (rays, row): (Range<usize>, usize), answer: (u32, u64)) {
-        let (frame, gpu) = (self.packed.stream_frame(row), &self.gpu);
-        gpu.queue.write_buffer(lane.cast.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(&frame));
-        lane.cast.count = row as u32;
+    fn send(&self, asking: &Asking, lane: &mut Lane) {
+        let (gpu, row) = (&self.gpu, lane.row);
+        if lane.cast.count as usize != row {
+            let frame = self.packed.stream_frame(row);
+            gpu.queue.write_buffer(lane.cast.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(&frame));
+            lane.cast.count = row as u32;
+        }
+        let group = lane.groups.entry(asking.question).or_insert_with(|| self.group(&lane.cast, &asking.kernel));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let paths = lane.cast.buffers.of(binding::PATHS);
         encoder.copy_buffer_to_buffer(&lane.upload, 0, paths, 0, 32 * row as u64);
-        self.dispatch(&mut encoder, &lane.cast, kernel, None);
-        lane.back.copy(&mut encoder, lane.cast.buffers.of(answer.0), 0, answer.1 * row as u64);
-        lane.sent = Some((rays, gpu.queue.submit([encoder.finish()])));
+        lane.cast.dispatch(&mut encoder, (&asking.kernel, group), None);
+        lane.back.copy(&mut encoder, lane.cast.buffers.of(asking.binding), 0, asking.bytes * row as u64);
+        lane.sent = Some(gpu.queue.submit([encoder.finish()]));
     }
 
     /// Writes the records of rays, all first ones before all second ones.
-    fn write(
-        &self,
-        lane: &mut Lane,
-        (rays, row): (Range<usize>, usize),
-        ray: &(impl Fn(usize) -> (StreamRay, Measure) + Sync),
-    ) -> Result<()> {
+    fn write(&self, lane: &mut Lane, range: Range<usize>, rays: &impl Rays) -> Result<()> {
+        let row = range.len().next_multiple_of(PIECE);
+        (lane.rays, lane.row) = (range.clone(), row);
         let failed = |error: wgpu::MapRangeError| Error::DeviceFailed {
             device: self.gpu.report.name.clone(),
             message: format!("a buffer can't be written: {error}"),
@@ -149,13 +187,9 @@ impl Caster {
         let tasks = pieces.into_par_iter().with_min_len(PIECES).zip(lane.measures.par_chunks_mut(PIECE)).enumerate();
         tasks.for_each(|(piece, ((firsts, seconds), measures))| {
             let (mut first, mut second) = ([UVec4::ZERO; PIECE], [UVec4::ZERO; PIECE]);
-            for (i, measure) in measures.iter_mut().enumerate() {
-                let number = rays.start + PIECE * piece + i;
-                let (of, own) = if number < rays.end { ray(number) } else { (StreamRay::AWAY, Measure::default()) };
-                *measure = own;
-                first[i] = pack(of.origin, of.source_primitive);
-                second[i] = pack(of.direction, of.limit.to_bits());
-            }
+            let of_piece = range.end.min(range.start + PIECE * piece)..range.end;
+            let to = Placed { firsts: &mut first, seconds: &mut second, measures };
+            place(self.packed.normalisation(), rays, of_piece, to);
             firsts.write(bytemuck::cast(first));
             seconds.write(bytemuck::cast(second));
         });
@@ -164,19 +198,20 @@ impl Caster {
         Ok(())
     }
 
-    /// Waits for what a lane has sent, if anything, and tells of it.
+    /// Waits for what a lane has sent, and tells of it.
     fn receive<E: From<Error>>(
         &self,
+        asking: &Asking,
         lane: &mut Lane,
-        answer: (u32, u64),
         tell: &mut Tell<'_, E>,
     ) -> std::result::Result<(), E> {
-        let Some((rays, submission)) = lane.sent.take() else { return Ok(()) };
-        let row = lane.cast.count as usize;
-        let size = answer.1 * row as u64;
+        let Lane { upload, back, measures, rays, row, sent, .. } = lane;
+        let Some(submission) = sent.take() else { return Ok(()) };
+        let (rays, row) = (rays.clone(), *row);
         // The GPU is done with it then, too.
-        lane.upload.map_async(wgpu::MapMode::Write, .., |_| {});
-        lane.back
-            .receive(&self.gpu, submission, size, |bytes| tell(Chunk { measures: &lane.measures, rays, bytes, row }))?
+        upload.map_async(wgpu::MapMode::Write, .., |_| {});
+        back.receive(&self.gpu, submission, asking.bytes * row as u64, |bytes| {
+            tell(Chunk { rays, measures, bytes, row })
+        })?
     }
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use eyerays_shader::stage::Found;
 
 use super::Queries;
-use super::hits::{Met, Place, Surfaces};
-use crate::batch::{Batch, Hit, Ray};
+use super::hits::{Answered, Numbers, Place, Surfaces};
+use crate::batch::{Batch, Hit, Rays};
 use crate::cpu;
 use crate::error::Result;
 use crate::gpu::Caster;
@@ -17,7 +17,7 @@ pub struct Crossings {
     surfaces: Arc<Surfaces>,
     /// Where those of each ray begin, and how many there are in all.
     starts: Vec<usize>,
-    met: Vec<Met>,
+    hits: Vec<Hit>,
 }
 
 /// Past nothing.
@@ -25,12 +25,12 @@ const BEFORE: f32 = -1.0;
 
 impl Crossings {
     /// Asks for the next crossing of each ray until none has any.
-    pub(super) fn found(queries: &Queries, count: usize, ray: &(impl Fn(usize) -> Ray + Sync)) -> Result<Self> {
-        let Queries { surfaces, caster } = queries;
+    pub(super) fn found(queries: &Queries, range: Range<usize>, rays: &impl Rays) -> Result<Self> {
+        let (Queries { surfaces, gpu }, count) = (queries, range.len());
         surfaces.threads.install(|| {
-            let batch = Batch::of(&surfaces.job, count, ray);
-            let passes = match caster {
-                Some(caster) => on_gpu(caster, &batch)?,
+            let batch = Batch::of(&surfaces.job, range, rays);
+            let passes = match gpu {
+                Some(gpu) => on_gpu(&gpu.caster, &batch)?,
                 None => on_cpu(surfaces, &batch),
             };
             let mut starts = vec![0; count + 1];
@@ -38,25 +38,21 @@ impl Crossings {
             for slot in 0..count {
                 starts[slot + 1] += starts[slot];
             }
-            let mut met = vec![Met::NOTHING; starts[count]];
+            let mut hits = vec![None; starts[count]];
+            let numbers = Numbers::Records(surfaces.job.primitives());
             // A pass has the next of each of its rays.
             for (number, pass) in passes.iter().enumerate() {
-                for (&slot, of) in pass.slots.iter().zip(&pass.found) {
-                    met[starts[slot as usize] + number] = surfaces.met(batch.measure(slot as usize), of);
+                for (&slot, found) in pass.slots.iter().zip(&pass.found) {
+                    hits[starts[slot as usize] + number] = surfaces.hit(batch.measure(slot as usize), found, numbers);
                 }
             }
-            Ok(Crossings { surfaces: surfaces.clone(), starts, met })
+            Ok(Crossings { surfaces: surfaces.clone(), starts, hits: hits.into_iter().flatten().collect() })
         })
     }
 
-    /// How many there are of all rays.
-    pub fn len(&self) -> usize {
-        self.met.len()
-    }
-
-    /// Is there none?
-    pub fn is_empty(&self) -> bool {
-        self.met.is_empty()
+    /// All of them, by their numbers.
+    pub fn hits(&self) -> &[Hit] {
+        &self.hits
     }
 
     /// The numbers of a ray's crossings, the nearest first.
@@ -66,24 +62,24 @@ impl Crossings {
             _ => 0..0,
         }
     }
+}
 
-    /// A crossing by its number.
-    pub fn hit(&self, number: usize) -> Option<Hit> {
-        self.met.get(number)?.hit()
+impl Answered for Crossings {
+    fn hit(&self, number: usize) -> Option<Hit> {
+        self.hits.get(number).copied()
     }
 
-    /// See [`Hits::surface`](super::Hits::surface).
-    pub fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        self.surfaces.surface(hit.primitive)
+    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
+        self.surfaces.surface(hit)
     }
 
-    /// Where it is.
-    pub fn place(&self, number: usize) -> Option<Place> {
-        self.surfaces.place(self.met.get(number)?)
+    fn place(&self, number: usize) -> Option<Place> {
+        self.surfaces.place(self.hits.get(number)?)
     }
 }
 
 /// The next crossing of each ray that has one.
+#[derive(Clone)]
 struct Pass {
     slots: Vec<u32>,
     found: Vec<Found<f32>>,
@@ -122,7 +118,7 @@ fn passes(batch: &Batch, mut next: impl FnMut(&[u32], &mut [Found<f32>]) -> Resu
     while !pass.slots.is_empty() {
         next(&pass.slots, &mut pass.found)?;
         pass = pass.kept();
-        passes.push(Pass { slots: pass.slots.clone(), found: pass.found.clone() });
+        passes.extend((!pass.slots.is_empty()).then(|| pass.clone()));
     }
     Ok(passes)
 }

@@ -1,20 +1,18 @@
 //! What rays have met, where that is, and of which object.
 
-use std::sync::Arc;
-
 use eyerays_shader::data::{Frame, Primitive, Specialisation};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::LaunchContext;
 use eyerays_shader::stage::Found;
-use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use glam::{DVec3, UVec4, Vec3};
 
+use super::sink::Sink;
 use crate::batch::{Hit, Measure};
 use crate::job::Job;
 use crate::method::Traversal;
 use crate::scene::ObjectNumbers;
-use crate::stream::StreamRay;
+use crate::stream::of_records;
 
 /// A scene that is ready for rays.
 pub(super) struct Surfaces {
@@ -32,19 +30,26 @@ impl Surfaces {
         Surfaces { job, objects, threads, frame, spec }
     }
 
-    /// The object of a primitive by its place in [`Scene::objects`](crate::scene::Scene::objects), and which of the object's it is.
-    pub fn surface(&self, primitive: u32) -> Option<(u32, u32)> {
-        let (object, within) = self.objects.within(primitive as usize)?;
+    /// What is told of something that was found, if it is anything.
+    #[inline]
+    pub fn hit(&self, measure: &Measure, found: &Found<f32>, numbers: Numbers<'_>) -> Option<Hit> {
+        let Found { coordinates: (u, v), index, instance, .. } = *found;
+        let number = numbers.get(index)?;
+        let copy = self.job.instances().get(instance as usize);
+        let primitive = copy.map_or(number, |copy| copy.number(number));
+        Some(Hit { t: measure.t(found.t), primitive, coordinates: [u, v], slot: (index, instance) })
+    }
+
+    /// See [`Queries::surface`](super::Queries::surface).
+    #[inline]
+    pub fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
+        let (object, within) = self.objects.within(hit.primitive as usize)?;
         Some((object, within as u32))
     }
 
-    /// What a ray has met, by what a kernel has found.
-    pub fn met(&self, measure: &Measure, found: &Found<f32>) -> Met {
-        let Found { coordinates: (u, v), index, instance, .. } = *found;
-        let number = self.job.primitives().get(index as usize).map_or(StreamRay::NOWHERE, Primitive::number);
-        let copy = self.job.instances().get(instance as usize);
-        let primitive = copy.map_or(number, |copy| copy.number(number));
-        Met { t: measure.t(found.t), coordinates: [u, v], index, instance, primitive }
+    /// See [`Queries::place`](super::Queries::place).
+    pub fn place(&self, hit: &Hit) -> Option<Place> {
+        Some(self.place_on(&self.primitive(hit.slot)?, hit.coordinates))
     }
 
     /// A primitive by its place among all and the copy of a mesh that it is in, where that has it.
@@ -53,12 +58,6 @@ impl Surfaces {
         let primitives = bytemuck::cast_slice(self.job.primitives());
         let launch = LaunchContext::new(&self.frame, self.spec, primitives, self.job.instances());
         Some(launch.placed(index, instance, 0.0))
-    }
-
-    /// Where something was met.
-    pub fn place(&self, met: &Met) -> Option<Place> {
-        let primitive = self.primitive((met.index, met.instance))?;
-        Some(self.place_on(&primitive, met.coordinates))
     }
 
     /// A place on a primitive.
@@ -78,34 +77,6 @@ impl Surfaces {
 /// Any direction will do: which side of a primitive is its front does not depend on who looks.
 const LOOK: Vec3 = Vec3::new(0.48, 0.6, 0.64);
 
-/// What a ray has met: nothing where the index is that of nothing.
-#[derive(Clone, Copy)]
-pub(super) struct Met {
-    t: f64,
-    coordinates: [f32; 2],
-    index: u32,
-    instance: u32,
-    /// Its number, which is asked for while its record is in a cache.
-    primitive: u32,
-}
-
-impl Met {
-    /// Nothing.
-    pub const NOTHING: Met = Met {
-        t: f64::INFINITY,
-        coordinates: [0.0; 2],
-        index: StreamRay::NOWHERE,
-        instance: StreamRay::NOWHERE,
-        primitive: StreamRay::NOWHERE,
-    };
-
-    /// What it is, if it is anything.
-    pub fn hit(&self) -> Option<Hit> {
-        let Met { t, coordinates, primitive, .. } = *self;
-        (self.index != StreamRay::NOWHERE).then_some(Hit { t, primitive, coordinates })
-    }
-}
-
 /// Where on a surface something was met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
@@ -119,44 +90,79 @@ pub struct Place {
     pub error: f64,
 }
 
-/// What rays have met, by their numbers.
-pub struct Hits {
-    surfaces: Arc<Surfaces>,
-    met: Vec<Met>,
+/// What is told of rays or points, by their numbers.
+pub trait Answered: Sync {
+    /// What was met, if anything.
+    fn hit(&self, number: usize) -> Option<Hit>;
+
+    /// See [`Queries::surface`](super::Queries::surface).
+    fn surface(&self, hit: &Hit) -> Option<(u32, u32)>;
+
+    /// Where something was met.
+    fn place(&self, number: usize) -> Option<Place>;
 }
 
-impl Hits {
-    pub(super) fn new(surfaces: Arc<Surfaces>, met: Vec<Met>) -> Self {
-        Hits { surfaces, met }
+/// What some rays have met first.
+pub struct Hits<'a> {
+    pub(super) surfaces: &'a Surfaces,
+    pub(super) numbers: Numbers<'a>,
+    pub(super) measures: &'a [Measure],
+    /// As [`crate::stream::Answers::Closest`] has them.
+    pub(super) records: &'a [UVec4],
+    /// The second records, none in a scene without copies of meshes.
+    pub(super) copies: &'a [UVec4],
+}
+
+/// The numbers of primitives, by their places among all.
+#[derive(Clone, Copy)]
+pub(super) enum Numbers<'a> {
+    /// In their records, which who has just followed rays has in a cache.
+    Records(&'a [Primitive]),
+    /// In a table, more of which is in a cache for who has not.
+    Table(&'a [u32]),
+}
+
+impl Numbers<'_> {
+    #[inline]
+    fn get(&self, index: u32) -> Option<u32> {
+        match self {
+            Numbers::Records(primitives) => primitives.get(index as usize).map(Primitive::number),
+            Numbers::Table(numbers) => numbers.get(index as usize).copied(),
+        }
+    }
+}
+
+impl Hits<'_> {
+    /// How many rays there are.
+    pub fn len(&self) -> usize {
+        self.records.len()
     }
 
-    /// Other hits in their place, made by many threads in memory that is there.
-    pub(super) fn fill(&mut self, count: usize, met: impl Fn(usize) -> Met + Sync) {
-        self.met.resize(count, Met::NOTHING);
-        self.met.par_iter_mut().enumerate().for_each(|(i, to)| *to = met(i));
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+}
+
+impl Answered for Hits<'_> {
+    #[inline]
+    fn hit(&self, ray: usize) -> Option<Hit> {
+        let found = of_records(*self.records.get(ray)?, self.copies.get(ray));
+        self.surfaces.hit(self.measures.get(ray)?, &found, self.numbers)
     }
 
-    pub(super) fn met(&self) -> &[Met] {
-        &self.met
+    #[inline]
+    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
+        self.surfaces.surface(hit)
     }
 
-    pub(super) fn met_mut(&mut self) -> &mut [Met] {
-        &mut self.met
+    fn place(&self, ray: usize) -> Option<Place> {
+        self.surfaces.place(&self.hit(ray)?)
     }
+}
 
-    /// What a ray has met first.
-    pub fn hit(&self, ray: usize) -> Option<Hit> {
-        self.met.get(ray)?.hit()
-    }
-
-    /// The object of a hit by its place in [`Scene::objects`](crate::scene::Scene::objects), and which of the object's primitives it is. A scene
-    /// whose objects were left out has none.
-    pub fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        self.surfaces.surface(hit.primitive)
-    }
-
-    /// Where a ray has met something.
-    pub fn place(&self, ray: usize) -> Option<Place> {
-        self.surfaces.place(self.met.get(ray)?)
+impl Sink<Hits<'_>> for &mut [Option<Hit>] {
+    fn take(self, hits: &Hits<'_>) {
+        self.iter_mut().enumerate().for_each(|(ray, to)| *to = hits.hit(ray));
     }
 }

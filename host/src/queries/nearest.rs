@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::Queries;
-use super::hits::{Place, Surfaces};
+use super::hits::{Answered, Place, Surfaces};
 use crate::batch::Hit;
 use crate::cpu;
 use crate::device_scene::flushed;
@@ -31,43 +31,17 @@ const LOST: f64 = 1.0 / (1 << 19) as f64;
 
 impl Nearest {
     pub(super) fn found(queries: &Queries, count: usize, point: &(impl Fn(usize) -> DVec3 + Sync)) -> Result<Self> {
-        let Queries { surfaces, caster } = queries;
+        let Queries { surfaces, .. } = queries;
         surfaces.threads.install(|| {
             let normalisation = surfaces.job.normalisation();
             let points: Vec<DVec3> = (0..count).into_par_iter().map(|i| normalisation.exactly(point(i))).collect();
             let stream = Stream::new(points.iter().map(|&point| placed(point)));
-            let found = match caster {
-                Some(caster) if count > 0 => caster.nearest(&stream)?,
-                _ => cpu::nearest_here(&surfaces.job, &stream),
+            let found = match queries.gpu(count) {
+                Some(gpu) => gpu.caster.nearest(&stream)?,
+                None => cpu::nearest_here(&surfaces.job, &stream),
             };
             Ok(Nearest { surfaces: surfaces.clone(), points, found })
         })
-    }
-
-    /// The triangle that is nearest to a point, and how far it is in the scene's units. Which of several it is that are equally near but for rounding is left to
-    /// that; what is told of it is in double precision.
-    pub fn hit(&self, point: usize) -> Option<Hit> {
-        let (primitive, near) = self.nearest(point)?;
-        let (v, w) = near.weights;
-        let t = near.square.sqrt() / self.surfaces.job.normalisation().scale;
-        Some(Hit { t, primitive: primitive.number(), coordinates: [v as f32, w as f32] })
-    }
-
-    /// See [`Hits::surface`](super::Hits::surface).
-    pub fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        self.surfaces.surface(hit.primitive)
-    }
-
-    /// Where on it that is. The error bounds how much nearer any other triangle is.
-    pub fn place(&self, point: usize) -> Option<Place> {
-        let (primitive, near) = self.nearest(point)?;
-        let [a, b, c] = primitive.vertices().map(Vec3::as_dvec3);
-        let (v, w) = near.weights;
-        let normalisation = self.surfaces.job.normalisation();
-        let at = a + (b - a) * v + (c - a) * w;
-        let error = LOST * (self.points[point].abs().max_element() + 2.0) / normalisation.scale;
-        let there = self.surfaces.place_on(&primitive, [v as f32, w as f32]);
-        Some(Place { point: normalisation.inverse().transform_point3(at), error, ..there })
     }
 
     fn nearest(&self, point: usize) -> Option<(Primitive, geometry::Nearest<f64>)> {
@@ -76,6 +50,33 @@ impl Nearest {
         let double = |p: DVec3| V3::<f64>::new(p.x, p.y, p.z);
         let [a, b, c] = primitive.vertices().map(|vertex| double(vertex.as_dvec3()));
         Some((primitive, geometry::nearest(a, b, c, double(self.points[point]))))
+    }
+}
+
+/// A hit's distance is that of the point in the scene's units, and the error of its place bounds how much nearer any other triangle is. Which of
+/// several it is that are equally near but for rounding is left to that; what is told of it is in double precision.
+impl Answered for Nearest {
+    fn hit(&self, point: usize) -> Option<Hit> {
+        let (primitive, near) = self.nearest(point)?;
+        let (v, w) = near.weights;
+        let t = near.square.sqrt() / self.surfaces.job.normalisation().scale;
+        let slot = (self.found[point].index, self.found[point].instance);
+        Some(Hit { t, primitive: primitive.number(), coordinates: [v as f32, w as f32], slot })
+    }
+
+    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
+        self.surfaces.surface(hit)
+    }
+
+    fn place(&self, point: usize) -> Option<Place> {
+        let (primitive, near) = self.nearest(point)?;
+        let [a, b, c] = primitive.vertices().map(Vec3::as_dvec3);
+        let (v, w) = near.weights;
+        let normalisation = self.surfaces.job.normalisation();
+        let at = a + (b - a) * v + (c - a) * w;
+        let error = LOST * (self.points[point].abs().max_element() + 2.0) / normalisation.scale;
+        let there = self.surfaces.place_on(&primitive, [v as f32, w as f32]);
+        Some(Place { point: normalisation.inverse().transform_point3(at), error, ..there })
     }
 }
 

@@ -54,6 +54,7 @@ impl ObjectNumbers {
     }
 
     /// The place of a primitive's object in [`Scene::objects`].
+    #[inline]
     pub fn find(&self, primitive: usize) -> Option<u32> {
         let after = self.sorted.partition_point(|&object| self.objects[object as usize].end <= primitive);
         self.sorted.get(after).copied()
@@ -61,6 +62,7 @@ impl ObjectNumbers {
 
     /// The same, and which of the object's primitives it is: numbers that another moment has, too, where what moves while the shutter is open
     /// comes after what stands still.
+    #[inline]
     pub(crate) fn within(&self, primitive: usize) -> Option<(u32, usize)> {
         let object = self.find(primitive)?;
         let within = primitive.checked_sub(self.objects[object as usize].start)?;

@@ -1,12 +1,16 @@
 //! Rays of one's own, in the scene's units, traced many at once.
 
-use eyerays_shader::real::TINY;
-use glam::DVec3;
+mod place;
+
+use std::ops::Range;
+
+use glam::{DVec3, UVec4};
 use rayon::prelude::*;
 
-use crate::device_scene::{Normalisation, flushed};
+pub use self::place::{BLOCK, RayBlock, Rays};
+pub(crate) use self::place::{Placed, place};
 use crate::job::Job;
-use crate::stream::{Answers, Stream, StreamRay};
+use crate::stream::{Answers, Stream};
 
 /// A ray in the scene's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +23,8 @@ pub struct Ray {
     pub tmax: f64,
 }
 
-/// What a ray meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What a ray meets. Two are equal that are the same place of a scene, wherever its hierarchies have that.
+#[derive(Debug, Clone, Copy)]
 pub struct Hit {
     /// How far it is from the ray's origin, in lengths of its direction.
     pub t: f64,
@@ -29,6 +33,8 @@ pub struct Hit {
     /// Where on it: barycentric weights of a triangle's second and third vertex, octahedral coordinates of a sphere's normal,
     /// or a disk's coordinates along two tangents, in radii.
     pub coordinates: [f32; 2],
+    /// Where its record is, and the copy of a mesh that it is in.
+    pub(crate) slot: (u32, u32),
 }
 
 /// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
@@ -51,6 +57,9 @@ pub struct Batch {
     measures: Vec<Measure>,
 }
 
+/// Rays that a thread places at once.
+const TASK: usize = 1 << 12;
+
 /// How distances of a kernel become lengths of a ray's direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Measure {
@@ -62,8 +71,15 @@ pub(crate) struct Measure {
 
 impl Measure {
     /// How far from the ray's origin something is that a kernel has found.
+    #[inline]
     pub fn t(&self, found: f32) -> f64 {
         self.moved + f64::from(found) * self.unit
+    }
+}
+
+impl PartialEq for Hit {
+    fn eq(&self, other: &Hit) -> bool {
+        (self.t, self.primitive, self.coordinates) == (other.t, other.primitive, other.coordinates)
     }
 }
 
@@ -80,15 +96,24 @@ impl Ray {
 impl Batch {
     /// Rays through a scene. One that goes nowhere, or from no place, meets nothing.
     pub fn new(packed: &Job, rays: &[Ray]) -> Self {
-        Batch::of(packed, rays.len(), |i| rays[i])
+        Batch::of(packed, 0..rays.len(), &|i: usize| rays[i])
     }
 
     /// The same of rays that are made as they are needed, by many threads.
-    pub fn of(packed: &Job, count: usize, ray: impl Fn(usize) -> Ray + Sync) -> Self {
-        let normalisation = packed.normalisation();
-        let placed = (0..count).into_par_iter().map(|i| placed(normalisation, &ray(i)));
-        let (stream, measures): (Vec<StreamRay>, Vec<Measure>) = placed.unzip();
-        Batch { stream: Stream::new(stream.into_iter()), measures }
+    pub fn of(packed: &Job, range: Range<usize>, rays: &impl Rays) -> Self {
+        let count = range.len();
+        let (mut words, mut measures) = (vec![UVec4::ZERO; 2 * count], vec![Measure::default(); count]);
+        let (firsts, seconds) = words.split_at_mut(count);
+        let tasks = firsts.par_chunks_mut(TASK).zip(seconds.par_chunks_mut(TASK)).zip(measures.par_chunks_mut(TASK));
+        tasks.enumerate().for_each(|(task, ((firsts, seconds), measures))| {
+            place(
+                packed.normalisation(),
+                rays,
+                range.start + TASK * task..range.end,
+                Placed { firsts, seconds, measures },
+            );
+        });
+        Batch { stream: Stream::of_words(words), measures }
     }
 
     /// The rays for a device.
@@ -112,64 +137,14 @@ impl Batch {
         let copy = packed.instances().get(found.instance as usize);
         let primitive = copy.map_or(number, |copy| copy.number(number));
         let (u, v) = found.coordinates;
-        Some(Hit { t: self.measure(ray).t(found.t), primitive, coordinates: [u, v] })
+        let slot = (found.index, found.instance);
+        Some(Hit { t: self.measure(ray).t(found.t), primitive, coordinates: [u, v], slot })
     }
-}
-
-/// A ray in the normalised scene: one from outside starts where it comes to the scene's cube, before anything is rounded. Its direction is
-/// multiplied by a power of two, which rounds nothing, so that its greatest component is at least 1 and below 2.
-#[inline]
-pub(crate) fn placed(normalisation: &Normalisation, ray: &Ray) -> (StreamRay, Measure) {
-    let (direction, (binade, over)) = grown(ray.direction);
-    let (scale, origin) = (normalisation.scale, normalisation.exactly(ray.origin));
-    let limit = ray.tmax * scale * binade;
-    let Some(enters) = entry(origin, direction).filter(|enters| limit >= *enters) else {
-        return (StreamRay::AWAY, Measure::default());
-    };
-    let origin = origin + direction * enters;
-    // What is at the end counts; and no limit is so small that a device takes it for zero.
-    let limit = ((limit - enters).min(f64::from(f32::MAX)) as f32).next_up().clamp(TINY, f32::MAX);
-    let source_primitive = StreamRay::NOWHERE;
-    let unit = over / scale;
-    let placed =
-        StreamRay { origin: flushed(origin.as_vec3()), direction: direction.as_vec3(), limit, source_primitive };
-    (placed, Measure { moved: enters * unit, unit })
-}
-
-/// A direction over a power of two, that, and one over it. What is no direction stays none.
-#[inline]
-fn grown(direction: DVec3) -> (DVec3, (f64, f64)) {
-    let size = direction.abs().max_element();
-    // The bits of its exponent: none below the least normal number, whose inverse is no infinity.
-    let binade = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits()).max(f64::MIN_POSITIVE);
-    let over = 1.0 / binade;
-    (direction * over, (binade, over))
-}
-
-/// How far a ray is from the cube around a normalised scene, zero in it; none if it never comes there, or is none.
-#[inline]
-fn entry(origin: DVec3, direction: DVec3) -> Option<f64> {
-    /// A little more than the scene's, so that nothing on its faces is passed.
-    const HALF: DVec3 = DVec3::splat(1.0 + 1.0 / 64.0);
-    // Of no place, or nowhere.
-    if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
-        return None;
-    }
-    if origin.abs().cmple(HALF).all() {
-        return Some(0.0);
-    }
-    // What goes along a pair of faces is between them all its way, or never; and no zero times infinity.
-    let along = DVec3::select(direction.cmpeq(DVec3::ZERO), DVec3::splat(f64::MIN_POSITIVE), direction);
-    let over = along.recip();
-    let (one, other) = ((-HALF - origin) * over, (HALF - origin) * over);
-    let (enters, leaves) = (one.min(other).max_element().max(0.0), one.max(other).min_element());
-    (leaves >= enters).then_some(enters)
 }
 
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use proptest::prelude::*;
 
     use super::*;
 
@@ -212,34 +187,5 @@ mod tests {
         let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Occlusion).unwrap();
         let Answers::Occlusion(shadows) = answers else { panic!("other answers") };
         assert_eq!(shadows[4..], met.map(u32::from), "what meets nothing is in no shadow");
-    }
-
-    proptest! {
-        /// Directions of all sizes that there are, but those below the least normal number.
-        #[test]
-        fn a_direction_grows_by_a_power_of_two(mantissa in prop::array::uniform3(-1f64..1.0), exponent in -1015i32..1023) {
-            let direction = DVec3::from(mantissa) * 2f64.powi(exponent);
-            prop_assume!(direction.abs().max_element() >= f64::MIN_POSITIVE);
-            let (up, (binade, over)) = grown(direction);
-            prop_assert!((1.0..2.0).contains(&up.abs().max_element()), "{direction}: {up}");
-            prop_assert_eq!(up * binade, direction);
-            prop_assert_eq!(over * binade, 1.0);
-        }
-
-        /// As far as the nearest and the farthest of three slabs, by definition.
-        #[test]
-        fn a_ray_enters_the_cube_where_it_comes_to_it(
-            origin in prop::array::uniform3(-3f64..3.0), direction in prop::array::uniform3(-1f64..1.0),
-        ) {
-            let (origin, direction) = (DVec3::from(origin), DVec3::from(direction));
-            let inside = |t: f64| (origin + direction * t).abs().max_element() <= 1.0 + 1.0 / 64.0 + 1e-9;
-            match entry(origin, direction) {
-                Some(enters) => {
-                    prop_assert!(inside(enters));
-                    prop_assert!(enters == 0.0 || !inside(enters - 1e-6));
-                }
-                None => prop_assert!((0..2000).all(|i| !inside(f64::from(i) * 5e-3 / direction.length() - 1e-12))),
-            }
-        }
     }
 }

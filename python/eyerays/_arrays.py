@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from ._device import ArrayLike, host_array
 
 LARGEST = 1e18
 """Coordinates are below this, so that squares of them are numbers of float32."""
@@ -24,9 +25,7 @@ def doubles(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
 
 def _numbers(name: str, values: ArrayLike, kinds: str) -> NDArray:
-    if isinstance(values, np.ma.MaskedArray):
-        raise TypeError(f"{name} is a masked array, whose mask nothing here asks; give what is not masked")
-    array = np.asarray(values)
+    array = host_array(name, values)
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} holds {array.dtype}, not {'integers' if kinds == 'iu' else 'numbers'}")
     return array
@@ -58,9 +57,10 @@ def finite_rows(name: str, values: ArrayLike) -> NDArray:
 
 def corners(name: str, values: ArrayLike, vertices: int) -> NDArray[np.uint32]:
     """Rows of three numbers of vertices, all of which there are, in an array of their own."""
-    if np.size(values) == 0:
+    given = host_array(name, values)
+    if given.size == 0:
         raise ValueError(f"{name} is empty; a mesh has a triangle at least")
-    array = _numbers(name, values, "iu")
+    array = _numbers(name, given, "iu")
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} has the shape {array.shape}, not (n, 3)")
     least, greatest = int(array.min()), int(array.max())

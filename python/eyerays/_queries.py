@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _arrays, _hits
+from ._device import ArrayLike
 from ._hits import Crossings, Hits, Nearest
 from ._native import Surfaces
 from ._progress import Progress, bar
@@ -22,6 +23,10 @@ MARGIN = 128
 
 class Queries:
     """Questions of rays and points. Arguments that several have mean the same to all.
+
+    Arrays may be numpy's, lists, or those of other libraries that have DLPack or `__cuda_array_interface__` (torch, cupy, jax, numba, ...): read where
+    they are if that is the host, and else copied there once, since wgpu can't take another API's memory. What requires grad is a TypeError:
+    give `x.detach()`. Answers are arrays of numpy.
 
     `device` is "auto" (a GPU in hardware for 65,536 rays and more if there is one, else the CPU), "cpu" or "gpu"; all have the same
     bits. `progress` is True for a bar of tqdm, or a function that is called with how many are done and how many there are.

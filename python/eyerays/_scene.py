@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _arrays, _files
+from ._device import ArrayLike
 from ._native import Studio, Surfaces
 from ._queries import Queries
 
@@ -230,7 +231,7 @@ class Scene(Queries):
     def from_open3d(cls, mesh: Any, *, quality: str = "medium", threads: int = 0) -> Scene:
         """The surfaces of an Open3D mesh, of its tensors or of the older kind."""
         if hasattr(mesh, "triangle"):
-            vertices, faces = mesh.vertex.positions.numpy(), mesh.triangle.indices.numpy()
+            vertices, faces = mesh.vertex.positions.cpu().numpy(), mesh.triangle.indices.cpu().numpy()
         else:
             vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
         return cls(vertices, faces, quality=quality, threads=threads)

@@ -17,6 +17,7 @@ import numpy as np
 import open3d as o3d
 from numpy.typing import NDArray
 
+from ._device import host_array
 from ._scene import Scene
 
 NONE = 0xFFFF_FFFF
@@ -25,9 +26,9 @@ NONE = 0xFFFF_FFFF
 class RaycastingScene:
     """Rays and points asked of triangles, as `open3d.t.geometry.RaycastingScene` answers them.
 
-    Tensors go in and come out, on the CPU. What is different: first hits are never lost at edges, and crossings of closed meshes are even from outside
-    and odd from inside, so that `nsamples` has nothing to add. `nthreads` counts where the scene is made, and nowhere else. A ray that goes nowhere is a
-    ValueError. `device` takes what Open3D has (its CPU), or a name of `Scene.closest`: "auto", "cpu", "gpu".
+    Tensors or arrays of other libraries go in, and tensors of the CPU come out. What is different: first hits are never lost at edges, and crossings
+    of closed meshes are even from outside and odd from inside, so that `nsamples` has nothing to add. `nthreads` counts where the scene is made, and
+    nowhere else. A ray that goes nowhere is a ValueError. `device` takes what Open3D has (its CPU), or a name of `Scene.closest`: "auto", "cpu", "gpu".
     """
 
     INVALID_ID = NONE
@@ -42,7 +43,7 @@ class RaycastingScene:
         if triangle_indices is None:
             mesh = vertex_positions
             vertex_positions, triangle_indices = mesh.vertex.positions, mesh.triangle.indices
-        return self._scene.add_mesh(_array(vertex_positions), _array(triangle_indices))
+        return self._scene.add_mesh(_array("vertex_positions", vertex_positions), _array("triangle_indices", triangle_indices))
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, o3d.core.Tensor]:
         """What rays (..., 6), origins and directions, hit first: `t_hit`, `geometry_ids`, `primitive_ids`, `primitive_uvs`, `primitive_normals`."""
@@ -70,23 +71,23 @@ class RaycastingScene:
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, o3d.core.Tensor]:
         """Where triangles come nearest to points (..., 3): `points`, `geometry_ids`, `primitive_ids`, `primitive_uvs`, `primitive_normals`."""
         fields = ("point", "object", "triangle", "uv", "normal")
-        nearest = self._scene.closest_point(_array(query_points), device=self._device, fields=fields)
+        nearest = self._scene.closest_point(_array("query_points", query_points), device=self._device, fields=fields)
         return {"points": _tensor(nearest.point.astype(np.float32)), **_surfaces(nearest)}
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> o3d.core.Tensor:
         """How far points are from the nearest triangle."""
-        nearest = self._scene.closest_point(_array(query_points), device=self._device, fields="distance")
+        nearest = self._scene.closest_point(_array("query_points", query_points), device=self._device, fields="distance")
         return _tensor(nearest.distance)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> o3d.core.Tensor:
         """The same, below zero inside of closed meshes."""
         _check(nsamples)
-        return _tensor(self._scene.signed_distance(_array(query_points), device=self._device).astype(np.float32))
+        return _tensor(self._scene.signed_distance(_array("query_points", query_points), device=self._device).astype(np.float32))
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> o3d.core.Tensor:
         """1 inside of closed meshes, 0 outside."""
         _check(nsamples)
-        return _tensor(self._scene.contains(_array(query_points), device=self._device).astype(np.float32))
+        return _tensor(self._scene.contains(_array("query_points", query_points), device=self._device).astype(np.float32))
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> o3d.core.Tensor:
@@ -99,8 +100,9 @@ def _check(nsamples: int) -> None:
         raise ValueError(f"nsamples is {nsamples}; it is odd and positive")
 
 
-def _array(values: Any) -> NDArray:
-    return values.cpu().numpy() if hasattr(values, "cpu") else np.asarray(values)
+def _array(name: str, values: Any) -> NDArray:
+    # Open3D's DLPack gives no copy on the host.
+    return values.cpu().numpy() if isinstance(values, o3d.core.Tensor) else host_array(name, values)
 
 
 def _tensor(array: NDArray) -> o3d.core.Tensor:
@@ -108,7 +110,7 @@ def _tensor(array: NDArray) -> o3d.core.Tensor:
 
 
 def _split(rays: Any) -> tuple[NDArray, NDArray]:
-    array = _array(rays)
+    array = _array("rays", rays)
     if array.ndim < 2 or array.shape[-1] != 6:
         raise ValueError(f"rays have the shape {array.shape}; there are two axes or more, the last of six numbers")
     return array[..., :3], array[..., 3:]

@@ -12,8 +12,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from ._device import ArrayLike, host_array
 from ._scene import Scene
 
 
@@ -108,7 +109,7 @@ class RayMeshIntersector:
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether each point (n, 3) is inside, of a closed mesh."""
-        points = _rows(points)
+        points = _rows("points", points)
         scene = self._scene
         return np.zeros(len(points), bool) if scene is None else scene.contains(points, device=self._device)
 
@@ -123,12 +124,12 @@ class RayMeshIntersector:
 
 
 def _rays(origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray, NDArray]:
-    origins, directions = _rows(origins), _rows(directions)
+    origins, directions = _rows("ray_origins", origins), _rows("ray_directions", directions)
     if origins.shape != directions.shape:
         raise ValueError(f"ray origins {origins.shape} and directions {directions.shape} do not go together")
     return origins, directions
 
 
-def _rows(values: ArrayLike) -> NDArray[np.float64]:
-    rows = np.asarray(values, np.float64)
+def _rows(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    rows = np.asarray(host_array(name, values), np.float64)
     return rows.reshape(-1, 3) if rows.size == 0 or rows.ndim == 1 else rows

@@ -46,14 +46,15 @@ impl Rows<'_> {
         if shape[1] != 3 {
             return Err(PyValueError::new_err(format!("{name} has rows of {} numbers, not of three", shape[1])));
         }
+        // `as_slice` gives Fortran's order, too, which has columns one after the other.
         Ok(match self {
             Rows::Single(array) => match array.as_slice() {
-                Ok(all) => RowsView::Singles(all.as_chunks().0),
-                Err(_) => RowsView::Single(array.as_array()),
+                Ok(all) if array.is_c_contiguous() => RowsView::Singles(all.as_chunks().0),
+                _ => RowsView::Single(array.as_array()),
             },
             Rows::Double(array) => match array.as_slice() {
-                Ok(all) => RowsView::Doubles(all.as_chunks().0),
-                Err(_) => RowsView::Double(array.as_array()),
+                Ok(all) if array.is_c_contiguous() => RowsView::Doubles(all.as_chunks().0),
+                _ => RowsView::Double(array.as_array()),
             },
         })
     }

@@ -208,6 +208,16 @@ def test_rays_that_are_none_are_refused_in_a_line(error, said, arguments):
     assert said in str(raised.value) and "\n" not in str(raised.value)
 
 
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_arrays_in_the_order_of_fortran_are_read(kind):
+    vertices, faces = icosphere(1)
+    origins, directions = np.random.default_rng(8).normal(size=(2, 50, 3)).astype(kind)
+    turned, c = np.asfortranarray, eyerays.Scene(vertices, faces)
+    fortran = eyerays.Scene(turned(vertices), turned(faces))
+    assert fortran.closest(turned(origins), turned(directions)).point.tobytes() == c.closest(origins, directions).point.tobytes()
+    assert fortran.closest_point(turned(origins)).point.tobytes() == c.closest_point(origins).point.tobytes()
+
+
 def test_arrays_that_lie_at_odd_addresses_are_read():
     def odd(array):
         return np.frombuffer(b"\0" + array.tobytes(), np.uint8)[1:].view(array.dtype).reshape(array.shape)

@@ -135,20 +135,10 @@ impl Answers {
 }
 
 /// What ray `i` of `count` has found, as [`Answers::Closest`] has it.
-pub(crate) fn found(records: &[UVec4], i: usize, count: usize) -> Found<f32> {
-    of_records(records[i], records.get(count + i))
-}
-
-/// What records say that has been found; scenes without copies of meshes have no second ones.
 #[inline]
-pub(crate) fn of_records(first: UVec4, second: Option<&UVec4>) -> Found<f32> {
-    let [t, u, v] = [first.x, first.y, first.z].map(f32::from_bits);
-    let instance = second.map_or(StreamRay::NOWHERE, |record| record.w);
-    Found { t, coordinates: (u, v), index: first.w, instance, time: 0.0 }
-}
-
-/// The records of what has been found.
-pub(crate) fn records(found: &Found<f32>) -> (UVec4, UVec4) {
-    let Found { t, coordinates: (u, v), index, instance, .. } = *found;
-    (pack(Vec3::new(t, u, v), index), UVec4::new(0, 0, 0, instance))
+pub(crate) fn found(records: &[UVec4], i: usize, count: usize) -> Found<f32> {
+    let instance = records.get(count + i).map_or(StreamRay::NOWHERE, |record| record.w);
+    let record = records[i];
+    let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
+    Found { t, coordinates: (u, v), index: record.w, instance, time: 0.0 }
 }

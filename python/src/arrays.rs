@@ -72,7 +72,7 @@ impl RowsView<'_> {
     }
 
     /// Row `i`.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, i: usize) -> DVec3 {
         match self {
             RowsView::Singles(rows) => Vec3::from(rows[i]).as_dvec3(),

@@ -43,6 +43,12 @@ pub struct RaysView<'a> {
 const NO_FAULT: usize = usize::MAX;
 
 impl Rays for RaysView<'_> {
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        let (origin, direction) = (self.origins.row(number) - self.offset, self.directions.row(number));
+        Ray { origin, direction, tmax: self.tmax.of(number) }
+    }
+
     /// One that is none is remembered.
     #[inline(always)]
     fn fill(&self, rays: Range<usize>, block: &mut RayBlock) {

@@ -24,7 +24,7 @@ use crate::gpu;
 use crate::meshes::{self, MeshArrays};
 use crate::rays::{Points, RayArrays, RaysView};
 use crate::table::Table;
-use crate::told::Columns;
+use crate::told::{Column, Columns};
 
 /// Fewer rays are answered by a CPU before a GPU has them.
 const WORTH_A_GPU: usize = 1 << 16;
@@ -82,7 +82,7 @@ impl Surfaces {
     ) -> PyResult<()> {
         let rays = rays.view(self.offset)?;
         let queries = py.detach(|| self.on(device, rays.count()))?;
-        let columns = Columns { arrays: fields.columns(rays.count())?, offset: self.offset };
+        let columns = self.columns(&queries, fields.columns(rays.count())?);
         let told = py.detach(|| queries.closest_into(rays.count(), &rays, columns, &mut heard(&rays, progress)));
         told.map_err(|Raised(error)| error)
     }
@@ -98,12 +98,13 @@ impl Surfaces {
     ) -> PyResult<()> {
         let points = Points::new(points.view("points")?);
         let queries = py.detach(|| self.on(device, points.count()))?;
-        let mut columns = Columns { arrays: fields.columns(points.count())?, offset: self.offset };
+        let mut columns = self.columns(&queries, fields.columns(points.count())?);
         blocks::each(py, (points.count(), queries.most_rays()), progress, |block| {
             let start = block.start;
             let nearest = queries.nearest(block.len(), |i| points.point(start + i, self.offset)).map_err(raised)?;
             points.check()?;
-            queries.install(|| columns.rows(&block).tell(&nearest, 0..block.len()));
+            let columns = columns.rows(&block);
+            queries.install(|| columns.tell(&nearest, &|of| of.map(|(hit, _)| hit), &|of| of.map(|(_, place)| place)));
             Ok(())
         })
     }
@@ -122,11 +123,13 @@ impl Surfaces {
         let mut table = Table::new(&names)?;
         let mut ends = vec![0];
         self.crossed(py, (&rays, &queries), progress, |block, crossings| {
-            let before = ends[block.start];
-            ends.extend((0..block.len()).map(|ray| before + crossings.of_ray(ray).end as i64));
-            let count = crossings.hits().len();
-            let columns = Columns { arrays: table.grown(count)?, offset: self.offset };
-            queries.install(|| columns.tell(crossings, 0..count));
+            let mut end = ends[block.start];
+            ends.extend((0..block.len()).map(|ray| {
+                end += crossings.of_ray(ray).len() as i64;
+                end
+            }));
+            let columns = self.columns(&queries, table.grown(crossings.hits().len())?);
+            queries.install(|| columns.tell(crossings.hits(), &|hit| Some(*hit), &|hit| queries.place(hit)));
             Ok(())
         })?;
         Ok((table.finish(py)?, ends.into_pyarray(py)))
@@ -190,6 +193,10 @@ impl Surfaces {
             triangles: scene.primitives() as usize,
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
         })
+    }
+
+    fn columns<'a>(&self, queries: &'a Queries, arrays: Vec<Column<'a>>) -> Columns<'a> {
+        Columns { arrays, queries, offset: self.offset }
     }
 
     /// Tells what rays cross, block by block.

@@ -2,13 +2,16 @@
 
 use std::ops::Range;
 
-use eyerays::queries::{Answered, Hits, Place, Sink, Split};
+use eyerays::batch::Hit;
+use eyerays::queries::{Place, Queries, Sink, Split};
 use glam::{DVec3, Vec3};
 
-/// Arrays of fields, and what is added to places.
+/// Arrays of fields, and what is needed to fill them.
 pub struct Columns<'a> {
     /// The arrays, all as long.
     pub arrays: Vec<Column<'a>>,
+    /// Whose hits they are.
+    pub queries: &'a Queries,
     /// What is added to places.
     pub offset: DVec3,
 }
@@ -71,23 +74,23 @@ impl Column<'_> {
         matches!(self, Column::Normal(_) | Column::Point(_) | Column::Error(_))
     }
 
-    /// Fills the rows with what is told of neighbours, the first of which is `start`, and of their places if these are needed.
-    fn fill(self, answers: &impl Answered, start: usize, places: &[Place]) {
-        let t = |i| answers.hit(i).map_or(f64::INFINITY, |hit| hit.t);
+    /// Fills the rows with what is told of neighbours' hits, and of their places if these are needed.
+    fn fill(self, queries: &Queries, hits: &[Option<Hit>], places: &[Place]) {
+        let surface = |hit: &Hit| queries.surface(hit).unwrap_or_default();
+        let object = |hit: &Option<Hit>| hit.as_ref().map_or(-1, |hit| i64::from(surface(hit).0));
+        let triangle = |hit: &Option<Hit>| hit.as_ref().map_or(-1, |hit| i64::from(surface(hit).1));
+        let t = |hit: &Option<Hit>| hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
         // What is met is not infinitely far.
-        let short = |i| answers.hit(i).map_or(f32::INFINITY, |hit| hit.t.min(f32::MAX.into()) as f32);
-        let surface = |i| answers.hit(i).map(|hit| answers.surface(&hit).unwrap_or_default());
-        let object = |i| surface(i).map_or(-1, |(object, _)| i64::from(object));
-        let triangle = |i| surface(i).map_or(-1, |(_, triangle)| i64::from(triangle));
-        let uv = |i| answers.hit(i).map_or([f32::NAN; 2], |hit| hit.coordinates);
+        let short = |hit: &Option<Hit>| hit.as_ref().map_or(f32::INFINITY, |hit| hit.t.min(f32::MAX.into()) as f32);
+        let uv = |hit: &Option<Hit>| hit.as_ref().map_or([f32::NAN; 2], |hit| hit.coordinates);
         match self {
-            Column::T(rows) => set(rows, start.., short),
-            Column::LongT(rows) => set(rows, start.., t),
-            Column::Triangle(rows) => set(rows, start.., |i| triangle(i) as i32),
-            Column::LongTriangle(rows) => set(rows, start.., triangle),
-            Column::Object(rows) => set(rows, start.., |i| object(i) as i32),
-            Column::LongObject(rows) => set(rows, start.., object),
-            Column::Uv(rows) => set(rows, start.., uv),
+            Column::T(rows) => set(rows, hits, short),
+            Column::LongT(rows) => set(rows, hits, t),
+            Column::Triangle(rows) => set(rows, hits, |hit| triangle(hit) as i32),
+            Column::LongTriangle(rows) => set(rows, hits, triangle),
+            Column::Object(rows) => set(rows, hits, |hit| object(hit) as i32),
+            Column::LongObject(rows) => set(rows, hits, object),
+            Column::Uv(rows) => set(rows, hits, uv),
             Column::Normal(rows) => set(rows, places, |place| place.normal.to_array()),
             Column::Point(rows) => set(rows, places, |place| place.point.to_array()),
             Column::Error(rows) => set(rows, places, |place| place.error as f32),
@@ -96,7 +99,7 @@ impl Column<'_> {
 }
 
 #[inline]
-fn set<T, F>(rows: &mut [T], of: impl IntoIterator<Item = F>, value: impl Fn(F) -> T) {
+fn set<T, F>(rows: &mut [T], of: &[F], value: impl Fn(&F) -> T) {
     rows.iter_mut().zip(of).for_each(|(to, of)| *to = value(of));
 }
 
@@ -107,44 +110,45 @@ impl Columns<'_> {
     /// Some of the rows.
     pub fn rows(&mut self, range: &Range<usize>) -> Columns<'_> {
         let arrays = self.arrays.iter_mut().map(|column| column.rows(range.clone())).collect();
-        Columns { arrays, offset: self.offset }
+        Columns { arrays, ..*self }
     }
 
-    /// Tells so many answers, a row each, with many threads.
-    pub fn tell(self, answers: &impl Answered, range: Range<usize>) {
-        if range.len() <= TASK {
-            return self.tell_here(answers, range);
+    /// Tells of as many things as there are rows, with many threads: what each is, and where.
+    pub fn tell<A: Sync>(
+        self,
+        of: &[A],
+        hit: &(impl Fn(&A) -> Option<Hit> + Sync),
+        place: &(impl Fn(&A) -> Option<Place> + Sync),
+    ) {
+        if of.len() <= TASK {
+            let hits: Vec<_> = of.iter().map(hit).collect();
+            return self.fill(&hits, |row| place(&of[row]));
         }
-        let (half, middle) = (range.len() / 2, range.start + range.len() / 2);
-        let (first, second) = self.split_at(half);
-        let (before, after) = (range.start..middle, middle..range.end);
-        rayon::join(|| first.tell(answers, before), || second.tell(answers, after));
+        let half = of.len() / 2;
+        let ((first, second), (before, after)) = (self.split_at(half), of.split_at(half));
+        rayon::join(|| first.tell(before, hit, place), || second.tell(after, hit, place));
     }
 
-    fn tell_here(self, answers: &impl Answered, range: Range<usize>) {
-        let has_places = self.arrays.iter().any(Column::needs_place);
-        let (start, placed) = (range.start, if has_places { range } else { 0..0 });
-        let places: Vec<Place> = placed.map(|number| self.place(answers, number)).collect();
-        self.arrays.into_iter().for_each(|column| column.fill(answers, start, &places));
-    }
-
-    fn place(&self, answers: &impl Answered, number: usize) -> Place {
-        let place = answers.place(number).unwrap_or(NOWHERE);
-        Place { point: place.point + self.offset, ..place }
+    fn fill(self, hits: &[Option<Hit>], place: impl Fn(usize) -> Option<Place>) {
+        let Columns { arrays, queries, offset } = self;
+        let moved = |place: Place| Place { point: place.point + offset, ..place };
+        let rows = if arrays.iter().any(Column::needs_place) { 0..hits.len() } else { 0..0 };
+        let places: Vec<Place> = rows.map(|row| place(row).map_or(NOWHERE, moved)).collect();
+        arrays.into_iter().for_each(|column| column.fill(queries, hits, &places));
     }
 }
 
 impl Split for Columns<'_> {
     fn split_at(self, rows: usize) -> (Self, Self) {
-        let offset = self.offset;
-        let (first, second) = self.arrays.into_iter().map(|column| <(_, _)>::from(column.split(rows))).unzip();
-        (Columns { arrays: first, offset }, Columns { arrays: second, offset })
+        let Columns { arrays, queries, offset } = self;
+        let (first, second) = arrays.into_iter().map(|column| <(_, _)>::from(column.split(rows))).unzip();
+        (Columns { arrays: first, queries, offset }, Columns { arrays: second, queries, offset })
     }
 }
 
-impl Sink<Hits<'_>> for Columns<'_> {
-    fn take(self, hits: &Hits<'_>) {
-        let all = 0..hits.len();
-        self.tell_here(hits, all);
+impl Sink<Option<Hit>> for Columns<'_> {
+    fn take(self, hits: &[Option<Hit>]) {
+        let queries = self.queries;
+        self.fill(hits, |row| queries.place(hits[row].as_ref()?));
     }
 }

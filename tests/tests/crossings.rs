@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use eyerays::batch::Ray;
 use eyerays::gpu::AdapterRequest;
 use eyerays::quality::Bvh;
-use eyerays::queries::{Answered, Crossings, Queries};
+use eyerays::queries::{Crossings, Queries};
 use eyerays::scene::{Instance, Material, Mesh, Object, Primitives, Scene, SharedMesh};
 use eyerays_tests::gpu;
 use eyerays_tests::random::Random;
@@ -178,7 +178,8 @@ fn crossings_are_those_of_double_precision_and_every_triangle_in_order() {
     let scene = scene(ball(3));
     let mut random = Random::new(3);
     let rays: Vec<Ray> = (0..500).map(|_| Ray::new(2.0 * random.cube(), random.direction())).collect();
-    let found = crossings(&scene, Bvh::Medium, &rays);
+    let queries = Queries::new(&scene, Bvh::Medium, 0).unwrap();
+    let found = queries.crossings(0..rays.len(), &|i: usize| rays[i]).unwrap();
     for (i, ray) in rays.iter().enumerate() {
         let mut expected: Vec<(f64, u32)> = Vec::new();
         for (number, corners) in (0..).zip(&scene.mesh.triangles) {
@@ -192,15 +193,15 @@ fn crossings_are_those_of_double_precision_and_every_triangle_in_order() {
             }
         }
         expected.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let got: Vec<_> = found.of_ray(i).map(|number| found.hit(number).expect("it is there")).collect();
+        let got = found.of_ray(i);
         assert_eq!(got.len(), expected.len(), "{ray:?}");
         for (hit, (t, triangle)) in got.iter().zip(&expected) {
             assert_eq!(hit.primitive, *triangle);
             assert!((hit.t - t).abs() < 1e-4, "{} and {t}", hit.t);
         }
-        let place = |number| found.place(number).expect("it is there").point;
-        for (number, hit) in found.of_ray(i).zip(&got) {
-            assert!(place(number).distance(ray.origin + ray.direction * hit.t) < 1e-4);
+        for hit in got {
+            let place = queries.place(hit).expect("it is there").point;
+            assert!(place.distance(ray.origin + ray.direction * hit.t) < 1e-4);
         }
     }
 }
@@ -219,7 +220,7 @@ fn what_is_equally_far_comes_by_its_number_and_a_ray_ends() {
     for quality in Bvh::OF_HOST {
         let found = crossings(&scene, quality, &rays);
         assert_eq!(counts(&found, 3), [4, 2, 0]);
-        let numbers = |ray| found.of_ray(ray).map(|i| found.hit(i).unwrap().primitive).collect::<Vec<_>>();
+        let numbers = |ray| found.of_ray(ray).iter().map(|hit| hit.primitive).collect::<Vec<_>>();
         let [first, second, third, fourth] = numbers(0)[..] else { panic!("four") };
         assert!(first + 12 == second && third + 12 == fourth && numbers(1) == [first, second], "{:?}", numbers(0));
     }
@@ -267,7 +268,7 @@ fn every_device_and_hierarchy_has_the_same_crossings_and_copies_are_closed() {
     let all = |queries: &Queries| {
         let found = queries.crossings(0..rays.len(), &|i: usize| rays[i]).unwrap();
         (0..rays.len())
-            .map(|ray| found.of_ray(ray).map(|i| (found.hit(i), found.place(i))).collect::<Vec<_>>())
+            .map(|ray| found.of_ray(ray).iter().map(|hit| (*hit, queries.place(hit))).collect::<Vec<_>>())
             .collect::<Vec<_>>()
     };
     let expected = all(&queries);

@@ -2,7 +2,7 @@
 
 use eyerays::gpu::AdapterRequest;
 use eyerays::quality::Bvh;
-use eyerays::queries::{Answered, Nearest, Queries};
+use eyerays::queries::Queries;
 use eyerays::scene::{Instance, Material, Mesh, Scene, SharedMesh};
 use eyerays_tests::gpu;
 use eyerays_tests::random::Random;
@@ -56,7 +56,7 @@ fn no_triangle_is_nearer_than_the_one_that_is_found() {
     let found = queries.nearest(points.len(), |i| points[i]).unwrap();
     let corners = |of: &[u32; 3]| of.map(|of| mesh.positions[of as usize].as_dvec3());
     for (i, &point) in points.iter().enumerate() {
-        let (hit, place) = (found.hit(i).expect("something is nearest"), found.place(i).expect("it is somewhere"));
+        let (hit, place) = found[i].expect("something is nearest");
         let least = mesh.triangles.iter().map(|of| distance(corners(of), point)).fold(f64::INFINITY, f64::min);
         assert!(hit.t - least <= place.error, "{point}: {} and {least}", hit.t);
         assert!(place.error <= 1e-5 * (1.0 + point.length()));
@@ -73,8 +73,7 @@ fn what_is_nowhere_is_near_to_nothing() {
     let queries = Queries::new(&Scene::of_mesh(mesh, Material::default()), Bvh::Fast, 0).unwrap();
     let points = [DVec3::NAN, DVec3::splat(f64::INFINITY), DVec3::splat(1e300), DVec3::ZERO];
     let found = queries.nearest(4, |i| points[i]).unwrap();
-    assert_eq!((0..4).map(|i| found.hit(i).is_some()).collect::<Vec<_>>(), [false, false, true, true]);
-    assert!(found.place(0).is_none() && found.place(4).is_none());
+    assert_eq!(found.iter().map(Option::is_some).collect::<Vec<_>>(), [false, false, true, true]);
 }
 
 #[test]
@@ -104,8 +103,8 @@ fn every_device_and_hierarchy_finds_the_same_also_in_copies() {
     let scene = Scene { shared, instances, ..Scene::of_mesh(mesh.clone(), Material::default()) };
     let queries = Queries::new(&scene, Bvh::Fast, 0).unwrap();
     let all = |queries: &Queries| {
-        let found: Nearest = queries.nearest(points.len(), |i| points[i]).unwrap();
-        (0..points.len()).map(|i| (found.hit(i).unwrap(), found.place(i).unwrap())).collect::<Vec<_>>()
+        let found = queries.nearest(points.len(), |i| points[i]).unwrap();
+        found.into_iter().map(|of| of.expect("something is nearest")).collect::<Vec<_>>()
     };
     let expected = all(&queries);
     for (point, (hit, place)) in points.iter().zip(&expected) {

@@ -24,16 +24,23 @@ pub struct RayBlock {
     pub tmax: [f64; BLOCK],
 }
 
-/// Rays by their numbers, made a block at a time.
+/// Rays by their numbers.
 pub trait Rays: Sync {
-    /// Makes at most [`BLOCK`] neighbours, the first in the first row. Should be `inline(always)`, to be compiled for what each processor has.
-    fn fill(&self, rays: Range<usize>, block: &mut RayBlock);
+    /// One of them.
+    fn ray(&self, number: usize) -> Ray;
+
+    /// Makes at most [`BLOCK`] neighbours, the first in the first row. What does that better than one by one should be `inline(always)`, to be
+    /// compiled for what each processor has.
+    #[inline(always)]
+    fn fill(&self, range: Range<usize>, block: &mut RayBlock) {
+        range.enumerate().for_each(|(row, number)| block.set(row, &self.ray(number)));
+    }
 }
 
 impl<F: Fn(usize) -> Ray + Sync> Rays for F {
     #[inline(always)]
-    fn fill(&self, rays: Range<usize>, block: &mut RayBlock) {
-        rays.enumerate().for_each(|(row, ray)| block.set(row, &self(ray)));
+    fn ray(&self, number: usize) -> Ray {
+        self(number)
     }
 }
 

@@ -17,7 +17,7 @@ use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::job::Job;
 use crate::method::{Method, Traversal};
-use crate::stream::{Answers, Question, Stream, records};
+use crate::stream::{Answers, Question, Stream};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
 const TASK: usize = 1024;
@@ -64,7 +64,7 @@ fn cast_here(isa: Isa, packed: &Job, traversal: Traversal, stream: &Stream, ques
             let start = Instant::now();
             trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), &mut hits);
             let time = start.elapsed();
-            (Answers::Closest(of_all::<f32>(&geometry, &hits)), time)
+            (Answers::Closest(records::<f32>(&geometry, &hits)), time)
         }
         Question::Occlusion => {
             let mut shadows = vec![0; stream.len()];
@@ -86,14 +86,12 @@ impl Follower {
         Follower(SceneView::new(packed, method.into()))
     }
 
-    /// Shows how far the rays are moved and the records of what each meets first.
-    pub fn closest(&self, rays: &impl Rays, range: Range<usize>, look: impl FnOnce(&[Measure], (&[UVec4], &[UVec4]))) {
+    /// Shows how far the rays are moved, and what each meets first.
+    pub fn closest(&self, rays: &impl Rays, range: Range<usize>, look: impl FnOnce(&[Measure], &[Found<f32>])) {
         self.follow(rays, range, |geometry, slots, stream, measures| {
             let mut found = vec![Found::nothing(); slots.len()];
             f32::follow(Isa::best(), self.0.traversal.method.way(), geometry, slots, Query::Trace(stream, &mut found));
-            let (records, copies): (Vec<_>, Vec<_>) = found.iter().map(records).unzip();
-            let has_copies = !self.0.job.instances().is_empty();
-            look(measures, (&records, if has_copies { &copies } else { &[] }));
+            look(measures, &found);
         });
     }
 
@@ -160,11 +158,11 @@ where
     let mut hits = vec![Found::<R>::nothing(); stream.len()];
     let (method, geometry) = (traversal.method, laid.stream(&frame));
     pool(threads)?.install(|| trace::<R>(Isa::best(), method, &geometry, &slots, &rays, &mut hits));
-    Ok(of_all(&geometry, &hits))
+    Ok(records(&geometry, &hits))
 }
 
 /// Hits as they lie in memory.
-fn of_all<R: Number>(geometry: &TraceContext<'_>, hits: &[Found<R>]) -> Vec<R::Record> {
+fn records<R: Number>(geometry: &TraceContext<'_>, hits: &[Found<R>]) -> Vec<R::Record> {
     let rows = Found::<R>::records(geometry.base.spec.effects) as usize;
     let mut records = vec![R::Record::default(); rows * hits.len()];
     for (slot, hit) in hits.iter().enumerate() {

@@ -1,12 +1,11 @@
 //! All that rays cross.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use eyerays_shader::stage::Found;
 
 use super::Queries;
-use super::hits::{Answered, Numbers, Place, Surfaces};
+use super::surfaces::Surfaces;
 use crate::batch::{Batch, Hit, Rays};
 use crate::cpu;
 use crate::error::Result;
@@ -14,7 +13,6 @@ use crate::gpu::Caster;
 
 /// Crossings of many rays, those of a ray one after the other, the nearest first.
 pub struct Crossings {
-    surfaces: Arc<Surfaces>,
     /// Where those of each ray begin, and how many there are in all.
     starts: Vec<usize>,
     hits: Vec<Hit>,
@@ -26,11 +24,11 @@ const BEFORE: f32 = -1.0;
 impl Crossings {
     /// Asks for the next crossing of each ray until none has any.
     pub(super) fn found(queries: &Queries, range: Range<usize>, rays: &impl Rays) -> Result<Self> {
-        let (Queries { surfaces, gpu }, count) = (queries, range.len());
+        let (Queries { surfaces, caster }, count) = (queries, range.len());
         surfaces.threads.install(|| {
             let batch = Batch::of(&surfaces.job, range, rays);
-            let passes = match gpu {
-                Some(gpu) => on_gpu(&gpu.caster, &batch)?,
+            let passes = match caster {
+                Some(caster) => on_gpu(caster, &batch)?,
                 None => on_cpu(surfaces, &batch),
             };
             let mut starts = vec![0; count + 1];
@@ -39,42 +37,27 @@ impl Crossings {
                 starts[slot + 1] += starts[slot];
             }
             let mut hits = vec![None; starts[count]];
-            let numbers = Numbers::Records(surfaces.job.primitives());
             // A pass has the next of each of its rays.
             for (number, pass) in passes.iter().enumerate() {
                 for (&slot, found) in pass.slots.iter().zip(&pass.found) {
-                    hits[starts[slot as usize] + number] = surfaces.hit(batch.measure(slot as usize), found, numbers);
+                    hits[starts[slot as usize] + number] = surfaces.hit(batch.measure(slot as usize), found);
                 }
             }
-            Ok(Crossings { surfaces: surfaces.clone(), starts, hits: hits.into_iter().flatten().collect() })
+            Ok(Crossings { starts, hits: hits.into_iter().flatten().collect() })
         })
     }
 
-    /// All of them, by their numbers.
+    /// All of them.
     pub fn hits(&self) -> &[Hit] {
         &self.hits
     }
 
-    /// The numbers of a ray's crossings, the nearest first.
-    pub fn of_ray(&self, ray: usize) -> Range<usize> {
+    /// Those of a ray, the nearest first.
+    pub fn of_ray(&self, ray: usize) -> &[Hit] {
         match self.starts.get(ray..ray + 2) {
-            Some(&[start, end]) => start..end,
-            _ => 0..0,
+            Some(&[start, end]) => &self.hits[start..end],
+            _ => &[],
         }
-    }
-}
-
-impl Answered for Crossings {
-    fn hit(&self, number: usize) -> Option<Hit> {
-        self.hits.get(number).copied()
-    }
-
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        self.surfaces.surface(hit)
-    }
-
-    fn place(&self, number: usize) -> Option<Place> {
-        self.surfaces.place(self.hits.get(number)?)
     }
 }
 

@@ -1,33 +1,36 @@
 //! Rays and points of one's own, asked of the surfaces of a scene on the device that is asked for: many at once, in the scene's units.
 
-mod coherence;
 mod crossings;
-mod hits;
 mod nearest;
+mod on_cpu;
+mod on_gpu;
+mod order;
 mod sink;
+mod sorted;
+mod surfaces;
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use eyerays_shader::data::Primitive;
 use eyerays_shader::stage::SHADOWED;
 use glam::DVec3;
 
 pub use self::crossings::Crossings;
-pub use self::hits::{Answered, Hits, Place};
-use self::hits::{Numbers, Surfaces};
-pub use self::nearest::Nearest;
-use self::sink::{Parts, divided};
+use self::on_cpu::on_cpu;
+use self::on_gpu::on_gpu;
 pub use self::sink::{Sink, Split};
+use self::sorted::Ordered;
+pub use self::surfaces::Place;
+use self::surfaces::Surfaces;
 use crate::batch::{Hit, Ray, Rays};
 use crate::cpu::{self, Follower};
 use crate::error::{Error, Result};
 use crate::gpu::{Caster, Chunk, Gpu};
 use crate::job::Job;
-use crate::method::{Layout, Method};
+use crate::method::Layout;
 use crate::quality::Bvh;
 use crate::scene::{Material, Mesh, ObjectNumbers, Scene, Settings};
-use crate::stream::Question;
+use crate::stream::{Question, found};
 
 /// The surfaces of a scene, ready for rays. Cheap to clone.
 ///
@@ -47,13 +50,7 @@ use crate::stream::Question;
 #[derive(Clone)]
 pub struct Queries {
     surfaces: Arc<Surfaces>,
-    gpu: Option<Arc<OnGpu>>,
-}
-
-/// What there is of a scene on a GPU, and the numbers of its primitives.
-struct OnGpu {
-    caster: Caster,
-    numbers: Vec<u32>,
+    caster: Option<Arc<Caster>>,
 }
 
 /// Rays that are followed at once: enough for all of a GPU, and for neighbours that share what a CPU has in its caches, in some hundred
@@ -73,7 +70,7 @@ impl Queries {
         let bare = bare(scene);
         let job = threads.install(|| Job::new(&bare, Settings::default(), quality.quality()))?;
         let surfaces = Surfaces::new(job, ObjectNumbers::of(scene), threads);
-        Ok(Queries { surfaces: Arc::new(surfaces), gpu: None })
+        Ok(Queries { surfaces: Arc::new(surfaces), caster: None })
     }
 
     /// The same on a GPU that is exact: the answers have the same bits.
@@ -82,8 +79,7 @@ impl Queries {
     /// What does not fit the GPU, or what its driver reports.
     pub fn on(&self, gpu: &Gpu) -> Result<Queries> {
         let caster = Caster::new(gpu, &self.surfaces.job, Layout::Gathered)?;
-        let numbers = self.surfaces.job.primitives().iter().map(Primitive::number).collect();
-        Ok(Queries { surfaces: self.surfaces.clone(), gpu: Some(Arc::new(OnGpu { caster, numbers })) })
+        Ok(Queries { surfaces: self.surfaces.clone(), caster: Some(Arc::new(caster)) })
     }
 
     /// The most rays that are worth asking for at once.
@@ -109,25 +105,23 @@ impl Queries {
         &self,
         count: usize,
         rays: &impl Rays,
-        sink: impl for<'a> Sink<Hits<'a>>,
+        sink: impl Sink<Option<Hit>>,
         heard: &mut Heard<'_, E>,
     ) -> std::result::Result<(), E> {
-        let (surfaces, of_records) = (&*self.surfaces, Numbers::Records(self.surfaces.job.primitives()));
+        let surfaces = &*self.surfaces;
+        let tell = |chunk: &Chunk<'_>, rays: Range<usize>| {
+            let records = bytemuck::cast_slice(chunk.bytes);
+            rays.map(|ray| surfaces.hit(&chunk.measures[ray], &found(records, ray, chunk.row))).collect()
+        };
+        let ask = |follower: &Follower, rays: &Ordered<'_, _>, range: Range<usize>, hits: &mut [Option<Hit>]| {
+            follower.closest(rays, range, |measures, found| {
+                let both = measures.iter().zip(found);
+                hits.iter_mut().zip(both).for_each(|(hit, (measure, found))| *hit = surfaces.hit(measure, found));
+            });
+        };
         surfaces.threads.install(|| match self.gpu(count) {
-            Some(OnGpu { caster, numbers }) => {
-                let ask = (caster, Question::Closest);
-                in_chunks(ask, (count, rays), sink, heard, |chunk, rays, sink| {
-                    let (records, copies) = bytemuck::cast_slice(chunk.bytes).split_at(chunk.row);
-                    let copies = copies.get(rays.clone()).unwrap_or_default();
-                    let (numbers, measures) = (Numbers::Table(numbers), &chunk.measures[rays.clone()]);
-                    sink.take(&Hits { surfaces, numbers, measures, records: &records[rays], copies });
-                })
-            }
-            None => self.in_blocks((count, rays), sink, heard, |follower, block, sink| {
-                follower.closest(rays, block, |measures, (records, copies)| {
-                    sink.take(&Hits { surfaces, numbers: of_records, measures, records, copies });
-                });
-            }),
+            Some(caster) => on_gpu((caster, Question::Closest), (count, rays), tell, sink, heard),
+            None => on_cpu(surfaces, (count, rays), (None, ask), sink, heard),
         })
     }
 
@@ -165,20 +159,21 @@ impl Queries {
         &self,
         count: usize,
         rays: &impl Rays,
-        sink: impl Sink<[bool]>,
+        sink: impl Sink<bool>,
         heard: &mut Heard<'_, E>,
     ) -> std::result::Result<(), E> {
+        let tell = |chunk: &Chunk<'_>, rays: Range<usize>| {
+            let shadows: &[u32] = bytemuck::cast_slice(chunk.bytes);
+            shadows[rays].iter().map(|&shadow| shadow == SHADOWED).collect()
+        };
+        let ask = |follower: &Follower, rays: &Ordered<'_, _>, range: Range<usize>, met: &mut [bool]| {
+            follower.any(rays, range, |shadows| {
+                met.iter_mut().zip(shadows).for_each(|(met, &shadow)| *met = shadow == SHADOWED);
+            });
+        };
         self.surfaces.threads.install(|| match self.gpu(count) {
-            Some(OnGpu { caster, .. }) => {
-                let ask = (caster, Question::Occlusion);
-                in_chunks(ask, (count, rays), sink, heard, |chunk, rays, sink| {
-                    let shadows: &[u32] = bytemuck::cast_slice(chunk.bytes);
-                    sink.take(&are_shadowed(&shadows[rays]));
-                })
-            }
-            None => self.in_blocks((count, rays), sink, heard, |follower, block, sink| {
-                follower.any(rays, block, |shadows| sink.take(&are_shadowed(shadows)));
-            }),
+            Some(caster) => on_gpu((caster, Question::Occlusion), (count, rays), tell, sink, heard),
+            None => on_cpu(&self.surfaces, (count, rays), (false, ask), sink, heard),
         })
     }
 
@@ -192,12 +187,14 @@ impl Queries {
         Crossings::found(self, range, rays)
     }
 
-    /// Where triangles come nearest to each of `count` points. One that is nowhere is near to none.
+    /// Where triangles come nearest to each of `count` points. One that is nowhere is near to none. A hit's distance is that of the point in the
+    /// scene's units, and the error of its place bounds how much nearer any other triangle is. Which of several it is that are equally near but
+    /// for rounding is left to that; what is told of it is in double precision.
     ///
     /// # Errors
     /// What a GPU reports.
-    pub fn nearest(&self, count: usize, point: impl Fn(usize) -> DVec3 + Sync) -> Result<Nearest> {
-        Nearest::found(self, count, &point)
+    pub fn nearest(&self, count: usize, point: impl Fn(usize) -> DVec3 + Sync) -> Result<Vec<Option<(Hit, Place)>>> {
+        nearest::nearest(self, count, &point)
     }
 
     /// What the distance between neighbouring numbers of single precision is in the scene, at its farthest from its middle: a roundoff of
@@ -207,50 +204,9 @@ impl Queries {
     }
 
     /// The GPU, if there is one and something to ask.
-    fn gpu(&self, count: usize) -> Option<&OnGpu> {
-        self.gpu.as_deref().filter(|_| count > 0)
+    fn gpu(&self, count: usize) -> Option<&Caster> {
+        self.caster.as_deref().filter(|_| count > 0)
     }
-
-    /// Works on a CPU, with its threads.
-    fn in_blocks<S: Split, E>(
-        &self,
-        (count, rays): (usize, &impl Rays),
-        sink: S,
-        heard: &mut Heard<'_, E>,
-        work: impl Fn(&Follower, Range<usize>, S) + Sync,
-    ) -> std::result::Result<(), E> {
-        let (mut parts, job) = (Parts::of(sink), &self.surfaces.job);
-        for start in (0..count).step_by(MOST_RAYS) {
-            let block = start..count.min(start + MOST_RAYS);
-            // How a CPU follows rays fastest.
-            let is_coherent = coherence::are_coherent(rays, block.clone(), job.normalisation().scale);
-            let method = if is_coherent { Method::Packet } else { Method::Wide };
-            let follower = Follower::new(job, method);
-            divided(block.clone(), parts.next(block.len()), &|rays, sink| work(&follower, rays, sink));
-            heard(block.end)?;
-        }
-        Ok(())
-    }
-}
-
-/// Works on what a GPU has answered, with the threads that it is called in.
-fn in_chunks<S: Split, E: From<Error> + Send>(
-    (caster, question): (&Caster, Question),
-    (count, rays): (usize, &impl Rays),
-    sink: S,
-    heard: &mut Heard<'_, E>,
-    work: impl Fn(&Chunk<'_>, Range<usize>, S) + Sync,
-) -> std::result::Result<(), E> {
-    let mut parts = Parts::of(sink);
-    caster.ask(question, (count, rays), &mut |chunk| {
-        let rays = chunk.rays.len();
-        divided(0..rays, parts.next(rays), &|rays, sink| work(&chunk, rays, sink));
-        heard(chunk.rays.end)
-    })
-}
-
-fn are_shadowed(shadows: &[u32]) -> Vec<bool> {
-    shadows.iter().map(|&shadow| shadow == SHADOWED).collect()
 }
 
 /// The surfaces of a scene without what they are made of: no material, no light, nothing that moves. What is behind glass, or where a

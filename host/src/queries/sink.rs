@@ -9,9 +9,9 @@ pub trait Split: Send + Sized {
 }
 
 /// Takes the answers to questions of rays, from several threads at once, each those of some rays.
-pub trait Sink<A: ?Sized>: Split {
-    /// Takes the answers of its rays.
-    fn take(self, answers: &A);
+pub trait Sink<T>: Split {
+    /// Takes the answers of all its rays.
+    fn take(self, answers: &[T]);
 }
 
 impl<T: Send> Split for &mut [T] {
@@ -20,7 +20,7 @@ impl<T: Send> Split for &mut [T] {
     }
 }
 
-impl<T: Copy + Send> Sink<[T]> for &mut [T] {
+impl<T: Copy + Send> Sink<T> for &mut [T] {
     fn take(self, answers: &[T]) {
         self.copy_from_slice(answers);
     }

@@ -1,24 +1,24 @@
-//! What rays have met, where that is, and of which object.
+//! What can be met, where that is, and of which object.
 
 use eyerays_shader::data::{Frame, Primitive, Specialisation};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::LaunchContext;
 use eyerays_shader::stage::Found;
-use glam::{DVec3, UVec4, Vec3};
+use glam::{DVec3, Vec3};
 
-use super::sink::Sink;
 use crate::batch::{Hit, Measure};
 use crate::job::Job;
 use crate::method::Traversal;
 use crate::scene::ObjectNumbers;
-use crate::stream::of_records;
 
 /// A scene that is ready for rays.
 pub(super) struct Surfaces {
     pub job: Job,
     pub objects: ObjectNumbers,
     pub threads: rayon::ThreadPool,
+    /// The numbers of the job's primitives: many more of them are in a core's caches than of the records that have them, too.
+    numbers: Vec<u32>,
     /// Of a launch, for [`Surfaces::primitive`].
     frame: Frame,
     spec: Specialisation,
@@ -27,14 +27,15 @@ pub(super) struct Surfaces {
 impl Surfaces {
     pub fn new(job: Job, objects: ObjectNumbers, threads: rayon::ThreadPool) -> Self {
         let (frame, spec) = (job.stream_frame(0), job.specialisation(&Traversal::default()));
-        Surfaces { job, objects, threads, frame, spec }
+        let numbers = job.primitives().iter().map(Primitive::number).collect();
+        Surfaces { job, objects, threads, numbers, frame, spec }
     }
 
     /// What is told of something that was found, if it is anything.
     #[inline]
-    pub fn hit(&self, measure: &Measure, found: &Found<f32>, numbers: Numbers<'_>) -> Option<Hit> {
+    pub fn hit(&self, measure: &Measure, found: &Found<f32>) -> Option<Hit> {
         let Found { coordinates: (u, v), index, instance, .. } = *found;
-        let number = numbers.get(index)?;
+        let number = *self.numbers.get(index as usize)?;
         let copy = self.job.instances().get(instance as usize);
         let primitive = copy.map_or(number, |copy| copy.number(number));
         Some(Hit { t: measure.t(found.t), primitive, coordinates: [u, v], slot: (index, instance) })
@@ -88,81 +89,4 @@ pub struct Place {
     pub normal: Vec3,
     /// A bound of how far rounding has moved the point off the surface, in the scene's units.
     pub error: f64,
-}
-
-/// What is told of rays or points, by their numbers.
-pub trait Answered: Sync {
-    /// What was met, if anything.
-    fn hit(&self, number: usize) -> Option<Hit>;
-
-    /// See [`Queries::surface`](super::Queries::surface).
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)>;
-
-    /// Where something was met.
-    fn place(&self, number: usize) -> Option<Place>;
-}
-
-/// What some rays have met first.
-pub struct Hits<'a> {
-    pub(super) surfaces: &'a Surfaces,
-    pub(super) numbers: Numbers<'a>,
-    pub(super) measures: &'a [Measure],
-    /// As [`crate::stream::Answers::Closest`] has them.
-    pub(super) records: &'a [UVec4],
-    /// The second records, none in a scene without copies of meshes.
-    pub(super) copies: &'a [UVec4],
-}
-
-/// The numbers of primitives, by their places among all.
-#[derive(Clone, Copy)]
-pub(super) enum Numbers<'a> {
-    /// In their records, which who has just followed rays has in a cache.
-    Records(&'a [Primitive]),
-    /// In a table, more of which is in a cache for who has not.
-    Table(&'a [u32]),
-}
-
-impl Numbers<'_> {
-    #[inline]
-    fn get(&self, index: u32) -> Option<u32> {
-        match self {
-            Numbers::Records(primitives) => primitives.get(index as usize).map(Primitive::number),
-            Numbers::Table(numbers) => numbers.get(index as usize).copied(),
-        }
-    }
-}
-
-impl Hits<'_> {
-    /// How many rays there are.
-    pub fn len(&self) -> usize {
-        self.records.len()
-    }
-
-    /// Is there none?
-    pub fn is_empty(&self) -> bool {
-        self.records.is_empty()
-    }
-}
-
-impl Answered for Hits<'_> {
-    #[inline]
-    fn hit(&self, ray: usize) -> Option<Hit> {
-        let found = of_records(*self.records.get(ray)?, self.copies.get(ray));
-        self.surfaces.hit(self.measures.get(ray)?, &found, self.numbers)
-    }
-
-    #[inline]
-    fn surface(&self, hit: &Hit) -> Option<(u32, u32)> {
-        self.surfaces.surface(hit)
-    }
-
-    fn place(&self, ray: usize) -> Option<Place> {
-        self.surfaces.place(&self.hit(ray)?)
-    }
-}
-
-impl Sink<Hits<'_>> for &mut [Option<Hit>] {
-    fn take(self, hits: &Hits<'_>) {
-        self.iter_mut().enumerate().for_each(|(ray, to)| *to = hits.hit(ray));
-    }
 }

@@ -10,7 +10,7 @@ import pytest
 
 import eyerays
 
-PAGE = Path(__file__).parents[2] / "docs" / "python.md"
+PYTHON = Path(__file__).parents[1]
 
 
 @pytest.mark.parametrize("name", ["eyerays", "eyerays._scene", "eyerays._queries", "eyerays._pictures", "eyerays._hits", "eyerays.trimesh", "eyerays.open3d"])
@@ -21,8 +21,9 @@ def test_examples_of_docstrings(name):
     assert "._" in name or result.attempted > 0
 
 
-def test_the_page_runs_and_tells_what_it_says():
-    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+@pytest.mark.parametrize("page", ["README.md", "../docs/python.md"])
+def test_pages_run_and_tell_what_they_say(page):
+    blocks = re.findall(r"```python\n(.*?)```", (PYTHON / page).read_text(), re.DOTALL)
     assert blocks
     names = {}
     for block in blocks:

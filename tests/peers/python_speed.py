@@ -6,7 +6,7 @@
 
 An icosphere of 327,680 triangles; rays of a camera, from its middle in all directions, and from anywhere around it in all directions. Ours tell
 `t` and `triangle` into arrays that are there, all fields into new ones, and whether anything is met; embreex tells triangles, Open3D all that it
-has. Figures are medians of seven calls. embreex takes one thread; set `taskset` and `--threads` for others of the rest.
+has, of rays in a tensor of its own that is made before. Figures are medians of seven calls. embreex takes one thread; set `taskset` and `--threads` for others of the rest.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def median(work, count, calls=7):
 
 
 def peers(vertices, faces):
-    """What others answer with, by their names, and how long they take to build."""
+    """What makes calls of others from rays, by their names, and how long they take to build."""
     found = {}
     try:
         from embreex import rtcore_scene
@@ -66,7 +66,7 @@ def peers(vertices, faces):
         embree = rtcore_scene.EmbreeScene()
         TriangleMesh(scene=embree, vertices=vertices.astype(np.float32), indices=faces.astype(np.int32))
         embree.run(np.zeros((1, 3), np.float32), np.ones((1, 3), np.float32))
-        found["embreex"] = embree.run, time.perf_counter() - start
+        found["embreex"] = lambda origins, ways: lambda: embree.run(origins, ways), time.perf_counter() - start
     except ImportError:
         pass
     try:
@@ -76,8 +76,12 @@ def peers(vertices, faces):
         scene = o3d.t.geometry.RaycastingScene()
         scene.add_triangles(o3d.core.Tensor(vertices.astype(np.float32)), o3d.core.Tensor(faces.astype(np.uint32)))
         scene.cast_rays(o3d.core.Tensor(np.ones((1, 6), np.float32)))
-        cast = lambda origins, ways: scene.cast_rays(o3d.core.Tensor.from_numpy(np.concatenate([origins, ways], axis=1)))  # noqa: E731
-        found["Open3D"] = cast, time.perf_counter() - start
+
+        def rays_of_open3d(origins, ways):
+            rays = o3d.core.Tensor.from_numpy(np.concatenate([origins, ways], axis=1))
+            return lambda: scene.cast_rays(rays)
+
+        found["Open3D"] = rays_of_open3d, time.perf_counter() - start
     except ImportError:
         pass
     return found
@@ -104,7 +108,7 @@ def main():
             row.append(median(lambda: scene.closest(origins, ways, out=out, device=of), len(ways)))
             row.append(median(lambda: scene.closest(origins, ways, device=of), len(ways)))
             row.append(median(lambda: scene.any(origins, ways, device=of), len(ways)))
-        row += [median(lambda: cast(origins, ways), len(ways)) for cast, _ in others.values()]
+        row += [median(call(origins, ways), len(ways)) for call, _ in others.values()]
         print(f"| {kind} | " + " | ".join(f"{rate:.1f}" for rate in row) + " |", flush=True)
 
 

@@ -73,7 +73,7 @@ impl Measure {
     /// How far from the ray's origin something is that a kernel has found.
     #[inline]
     pub fn t(&self, found: f32) -> f64 {
-        self.moved + f64::from(found) * self.unit
+        (self.moved + f64::from(found) * self.unit).min(f64::MAX)
     }
 }
 

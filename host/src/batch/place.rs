@@ -167,7 +167,8 @@ fn placed(normalisation: &Normalisation, ray: &Ray) -> (StreamRay, Measure) {
     let origin = origin + direction * enters;
     // What is at the end counts; and no limit is so small that a device takes it for zero.
     let limit = after((limit - enters).min(f64::from(f32::MAX)) as f32).clamp(TINY, f32::MAX);
-    let unit = over / scale;
+    // What is too far for a number of double precision is at the farthest there is.
+    let unit = (over / scale).min(f64::MAX);
     let away = StreamRay::AWAY;
     let either = |there: f64, away: f32| if comes { there as f32 } else { away };
     let origin = Vec3::new(

@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::order::Order;
 use super::sink::{Parts, Sink, divided};
-use super::sorted::{Ordered, by_direction, places};
+use super::sorted::{Ordered, Places, by_direction};
 use super::surfaces::Surfaces;
 use super::{Heard, MOST_RAYS};
 use crate::batch::Rays;
@@ -24,7 +26,7 @@ pub(super) fn on_cpu<T: Copy + Send + Sync, R: Rays, E>(
     sink: impl Sink<T>,
     heard: &mut Heard<'_, E>,
 ) -> Result<(), E> {
-    let mut parts = Parts::of(sink);
+    let (mut parts, mut room) = (Parts::of(sink), Vec::new());
     for start in (0..count).step_by(MOST_RAYS) {
         let block = start..count.min(start + MOST_RAYS);
         let sink = parts.next(block.len());
@@ -33,7 +35,7 @@ pub(super) fn on_cpu<T: Copy + Send + Sync, R: Rays, E>(
         match Order::of(rays, block.clone(), scene) {
             Order::Neighbours => in_turn(surfaces, Method::Packet, (rays, &block), (nothing, &ask), sink),
             Order::None => in_turn(surfaces, Method::Wide, (rays, &block), (nothing, &ask), sink),
-            Order::Sorted(most) => sorted(surfaces, most, (rays, &block), (nothing, &ask), sink),
+            Order::Sorted(most) => sorted(surfaces, (most, &mut room), (rays, &block), (nothing, &ask), sink),
         }
         heard(block.end)?;
     }
@@ -55,23 +57,24 @@ fn in_turn<T: Copy + Send + Sync, R: Rays>(
     });
 }
 
-/// Asks rays by their directions, `most` at once.
+/// Asks rays by their directions, `most` at once, and has their answers in between in a room that is kept: to take it takes longer than to ask.
 fn sorted<T: Copy + Send + Sync, R: Rays>(
     surfaces: &Surfaces,
-    most: usize,
+    (most, room): (usize, &mut Vec<T>),
     (rays, block): (&R, &Range<usize>),
     (nothing, ask): (T, &impl Ask<T, R>),
     sink: impl Sink<T>,
 ) {
     let (follower, mut parts) = (Follower::new(&surfaces.job, Method::Packet), Parts::of(sink));
-    let mut answers = vec![nothing; most.min(block.len())];
+    let missing = most.min(block.len()).saturating_sub(room.len());
+    room.par_extend(rayon::iter::repeat_n(nothing, missing));
     for start in block.clone().step_by(most) {
         let part = start..block.end.min(start + most);
-        let (order, answers) = (by_direction(rays, part.clone()), &mut answers[..part.len()]);
-        let (rays, places) = (Ordered::by(rays, start, &order), places(&order));
+        let (order, answers) = (by_direction(rays, part.clone()), &mut room[..part.len()]);
+        let (rays, places) = (Ordered::by(rays, start, &order), Places::of(&order));
         divided(0..part.len(), &mut *answers, &|range, answers| ask(&follower, &rays, range, answers));
         divided(0..part.len(), parts.next(part.len()), &|range, sink| {
-            let own: Vec<T> = places[range].iter().map(|&place| answers[place as usize]).collect();
+            let own: Vec<T> = places.part(range).map(|place| answers[place]).collect();
             sink.take(&own);
         });
     }

@@ -13,8 +13,10 @@ const LEAST: usize = 64;
 const ASKED: usize = 512;
 /// How much nearer neighbours are to each other than any rays are.
 const NEARER: f64 = 16.0;
-/// Rays that are sorted at once: as many as there are surfaces, so that neighbours meet the same ones, but what lies between goes through
-/// memory if there are more of them than a cache holds.
+/// Rays a surface that are sorted at once: more, and what lies between goes through memory instead of a cache; fewer, and neighbours meet
+/// fewer of the same surfaces.
+const DENSE: usize = 4;
+/// The fewest and the most that are.
 const SORTED: (usize, usize) = (1 << 17, 1 << 20);
 /// Surfaces a ray, more of which leave neighbours with nothing in common.
 const SPARSE: usize = 4;
@@ -45,7 +47,7 @@ impl Order {
             [rays.ray(first), rays.ray(first + 1)]
         };
         let asked: Vec<[Ray; 2]> = (0..2 * ASKED).map(pair).collect();
-        let most = surfaces.clamp(SORTED.0, SORTED.1);
+        let most = (DENSE * surfaces).clamp(SORTED.0, SORTED.1);
         if are_coherent(&asked, scale) {
             Order::Neighbours
         } else if count >= SORTED.0 && SPARSE * count.min(most) >= surfaces && start_together(&asked, scale) {
@@ -98,7 +100,7 @@ mod tests {
         };
         let shuffled = |i: usize| of_camera(i * 40_503 % count);
         is(Order::Neighbours, &of_camera);
-        is(Order::Sorted(count), &shuffled);
+        is(Order::Sorted(4 * count), &shuffled);
         is(Order::None, &|i| Ray { origin: shuffled(i).direction, ..shuffled(i) });
         // All the same; and none at all.
         is(Order::Neighbours, &|_| Ray::new(DVec3::ONE, DVec3::X));

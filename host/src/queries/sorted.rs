@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use eyerays_kernels_cpu::Isa;
+use eyerays_shader::real::{SimdIsa, Task};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -13,37 +15,60 @@ const CELLS: f64 = 2048.0;
 
 /// The numbers of rays in their block, sorted by the Morton codes of their directions' cells.
 pub(super) fn by_direction(rays: &impl Rays, block: Range<usize>) -> Vec<u32> {
-    let mut keys = vec![0u64; block.len()];
-    let tasks = keys.par_chunks_mut(BLOCK).with_min_len(BLOCK).enumerate();
-    tasks.for_each_init(RayBlock::default, |made, (number, keys)| {
-        let first = block.start + BLOCK * number;
-        rays.fill(first..first + keys.len(), made);
-        for (row, key) in keys.iter_mut().enumerate() {
-            *key = u64::from(code(made.ray(row).direction)) << 32 | (BLOCK * number + row) as u64;
-        }
+    let mut keys = vec![0; block.len()];
+    keys.par_chunks_mut(TASK).enumerate().for_each(|(task, keys)| {
+        Isa::best().run(Coding { rays, start: block.start, first: TASK * task, keys });
     });
     keys.par_sort_unstable();
     keys.into_par_iter().map(|key| key as u32).collect()
 }
 
-/// A direction's place on an octahedron that is unfolded, from 0 to 1 on two axes.
-#[inline]
-fn unfolded(direction: DVec3) -> DVec2 {
-    let along = direction * (1.0 / direction.abs().element_sum());
-    let upper = DVec2::new(along.x, along.y);
-    let lower = (1.0 - DVec2::new(along.y, along.x).abs()).copysign(upper);
-    0.5 + 0.5 * if along.z < 0.0 { lower } else { upper }
+/// Rays that a thread codes at once.
+const TASK: usize = 64 * BLOCK;
+
+/// Writes the codes of rays' directions, each before its ray's number in the block.
+struct Coding<'a, R> {
+    rays: &'a R,
+    /// Where the block starts, and the first ray in it.
+    start: usize,
+    first: usize,
+    keys: &'a mut [u64],
 }
 
-#[inline]
+impl<R: Rays> Task<f32> for Coding<'_, R> {
+    #[inline(always)]
+    fn run<V: SimdIsa<f32>>(self) {
+        let mut made = RayBlock::default();
+        for (number, keys) in self.keys.chunks_mut(BLOCK).enumerate() {
+            let first = self.first + BLOCK * number;
+            self.rays.fill(self.start + first..self.start + first + keys.len(), &mut made);
+            for (row, key) in keys.iter_mut().enumerate() {
+                *key = u64::from(code(made.ray(row).direction)) << 32 | (first + row) as u64;
+            }
+        }
+    }
+}
+
+/// A direction's place on an octahedron that is unfolded, from 0 to 1 on two axes.
+#[inline(always)]
+fn unfolded(direction: DVec3) -> DVec2 {
+    let along = direction * (1.0 / (direction.x.abs() + direction.y.abs() + direction.z.abs()));
+    let (x, y) = (along.x, along.y);
+    let lower = DVec2::new((1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y));
+    let is_lower = along.z < 0.0;
+    DVec2::new(if is_lower { lower.x } else { x }, if is_lower { lower.y } else { y }) * 0.5 + 0.5
+}
+
+#[inline(always)]
 fn code(direction: DVec3) -> u32 {
     let place = unfolded(direction) * CELLS;
     // What is no direction is anywhere.
-    let [x, y] = [place.x, place.y].map(|x| x.clamp(0.0, CELLS - 1.0) as u32);
-    spread(x) | spread(y) << 1
+    let cell = |x: f64| spread(x.clamp(0.0, CELLS - 1.0) as u32);
+    cell(place.x) | cell(place.y) << 1
 }
 
 /// The bits of a number, each at twice its place.
+#[inline(always)]
 fn spread(x: u32) -> u32 {
     let x = (x | x << 8) & 0x00ff_00ff;
     let x = (x | x << 4) & 0x0f0f_0f0f;
@@ -52,15 +77,26 @@ fn spread(x: u32) -> u32 {
 }
 
 /// Where in an order each number is.
-pub(super) fn places(order: &[u32]) -> Vec<u32> {
-    // Atomic only so that many threads may write.
-    let places: Vec<AtomicU32> = (0..order.len()).map(|_| AtomicU32::new(0)).collect();
-    order
-        .par_iter()
-        .with_min_len(1 << 12)
-        .enumerate()
-        .for_each(|(place, &number)| places[number as usize].store(place as u32, Ordering::Relaxed));
-    places.into_iter().map(AtomicU32::into_inner).collect()
+pub(super) struct Places(Vec<AtomicU32>);
+
+impl Places {
+    /// Of an order that has every number once.
+    pub fn of(order: &[u32]) -> Self {
+        // Atomic only so that many threads may write.
+        let places: Vec<AtomicU32> = order.par_iter().map(|_| AtomicU32::new(0)).collect();
+        let tasks = order.par_chunks(TASK).enumerate();
+        tasks.for_each(|(task, order)| {
+            for (place, &number) in (TASK * task..).zip(order) {
+                places[number as usize].store(place as u32, Ordering::Relaxed);
+            }
+        });
+        Places(places)
+    }
+
+    /// The places of some numbers.
+    pub fn part(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
+        self.0[range].iter().map(|place| place.load(Ordering::Relaxed) as usize)
+    }
 }
 
 /// Rays of a block in an order.
@@ -112,8 +148,8 @@ mod tests {
         let count = 20_000;
         let rays = |i: usize| Ray::new(DVec3::ZERO, direction(i));
         let order = by_direction(&rays, 3..count + 3);
-        let places = places(&order);
-        assert!((0..count).all(|number| order[places[number] as usize] as usize == number));
+        let places = Places::of(&order);
+        assert!(places.part(0..count).enumerate().all(|(number, place)| order[place] as usize == number));
         let ordered = Ordered::by(&rays, 3, &order);
         let along: Vec<DVec3> =
             (0..count).map(|i| ordered.ray(i).direction.normalize()).filter(|d| d.is_finite()).collect();

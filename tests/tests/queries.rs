@@ -99,6 +99,23 @@ fn a_gpu_has_the_same_answers() {
     }
 }
 
+/// So many that a CPU asks them by their directions; few of them are asked as they come.
+#[test]
+fn rays_from_one_place_have_the_answers_that_each_has_by_itself() {
+    let (count, few) = ((1 << 17) + 77, 10_000);
+    let mut random = Random::new(4);
+    let scene = shipped("room");
+    let rays: Vec<Ray> = (0..count).map(|_| Ray::new(DVec3::new(0.1, 1.2, -0.3), random.cube())).collect();
+    let queries = Queries::new(&scene, Bvh::Medium, 2).unwrap();
+    let (hits, any) = asked(&queries, &rays);
+    assert!(hits.iter().flatten().count() > count / 2);
+    for (part, rays) in rays.chunks(few).enumerate() {
+        let (own, own_any) = asked(&queries, rays);
+        let all = few * part..few * part + rays.len();
+        assert!(hits[all.clone()] == own && any[all] == own_any, "part {part}");
+    }
+}
+
 #[test]
 fn no_rays_have_no_answers() {
     let queries = Queries::new(&shipped("cornell"), Bvh::Fast, 1).unwrap();

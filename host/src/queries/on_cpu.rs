@@ -57,7 +57,8 @@ fn in_turn<T: Copy + Send + Sync, R: Rays>(
     });
 }
 
-/// Asks rays by their directions, `most` at once, and has their answers in between in a room that is kept: to take it takes longer than to ask.
+/// Asks rays by their directions, `most` at once. Their answers wait in a room that is kept from one block to the next, since to take memory
+/// takes as long as to ask.
 fn sorted<T: Copy + Send + Sync, R: Rays>(
     surfaces: &Surfaces,
     (most, room): (usize, &mut Vec<T>),

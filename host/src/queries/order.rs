@@ -20,7 +20,7 @@ const DENSE: usize = 4;
 const SORTED: (usize, usize) = (1 << 17, 1 << 20);
 /// Surfaces a ray, more of which leave neighbours with nothing in common.
 const SPARSE: usize = 4;
-/// How far apart places are that are one, in the scene's cube, and directions.
+/// How far apart places are that are one, in the scene's cube.
 const ONE: f64 = 1.0 / 64.0;
 
 /// In which order rays are best followed.

@@ -62,7 +62,7 @@ fn unfolded(direction: DVec3) -> DVec2 {
 #[inline(always)]
 fn code(direction: DVec3) -> u32 {
     let place = unfolded(direction) * CELLS;
-    // What is no direction is anywhere.
+    // What is no direction may be anywhere.
     let cell = |x: f64| spread(x.clamp(0.0, CELLS - 1.0) as u32);
     cell(place.x) | cell(place.y) << 1
 }

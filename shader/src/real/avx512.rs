@@ -39,3 +39,24 @@ unsafe fn descending(x: __m512i) -> __m512i {
         step(x, _mm512_shuffle_epi32::<0x4e>(x), 0b0101_0101)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn lanes_are_sorted_as_integers_are(
+            lanes in 0u32..256, high in prop::array::uniform8(prop_oneof![Just(0f32), 0f32..2.0]), low in prop::array::uniform8(1u32..),
+        ) {
+            if !(std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512vl")) {
+                return Ok(());
+            }
+            let of = |lane: usize| u64::from(high[lane].to_bits()) << 32 | u64::from(low[lane]);
+            let mut expected = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| if lanes >> lane & 1 == 1 { of(lane) } else { 0 });
+            expected.sort_by(|a, b| b.cmp(a));
+            prop_assert_eq!(Avx512::sorted(lanes, &high, &low), Some(expected));
+        }
+    }
+}

@@ -33,11 +33,11 @@ mod vector;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::{Avx2, Eight, Four};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Avx512;
 #[cfg(not(target_arch = "spirv"))]
 pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use avx512::Avx512;
 #[cfg(not(target_arch = "spirv"))]
 pub use lanes::{Lanes, Native, SimdIsa, Task};
 pub use vector::V3;

@@ -38,6 +38,13 @@ pub trait SimdIsa<S: Scalar> {
     type Four: Lanes<S>;
     /// Vectors that trace several rays together.
     type Packet: Lanes<S> + RayLanes;
+
+    /// The bits of eight numbers that are at least +0, each before those of an integer, of the lanes whose bits are set: the greatest first, and
+    /// zeros behind them. None where no instructions do that without a branch.
+    #[inline(always)]
+    fn sorted(_lanes: u32, _high: &[f32; 8], _low: &[u32; 8]) -> Option<[u64; 8]> {
+        None
+    }
 }
 
 /// What is to be compiled for every instruction set.
@@ -54,17 +61,6 @@ impl<S: Scalar> SimdIsa<S> for Native {
     type Eight = S::Eight;
     type Four = S::Four;
     type Packet = S::Packet;
-}
-
-/// A processor with AVX-512; not public, as [`Avx2`](super::Avx2).
-#[cfg(target_arch = "x86_64")]
-pub(super) enum Avx512 {}
-
-#[cfg(target_arch = "x86_64")]
-impl SimdIsa<f32> for Avx512 {
-    type Eight = <super::Avx2 as SimdIsa<f32>>::Eight;
-    type Four = <super::Avx2 as SimdIsa<f32>>::Four;
-    type Packet = super::F32xN<16>;
 }
 
 /// Implements [`Lanes`] for a [`Scalar`]: it is one lane of itself.

@@ -10,6 +10,8 @@
 mod alone;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 #[cfg(target_arch = "spirv")]
 mod device;
 #[cfg(not(target_arch = "spirv"))]
@@ -31,11 +33,11 @@ mod vector;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::{Avx2, Eight, Four};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Avx512;
 #[cfg(not(target_arch = "spirv"))]
 pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
-#[cfg(target_arch = "x86_64")]
-use lanes::Avx512;
 #[cfg(not(target_arch = "spirv"))]
 pub use lanes::{Lanes, Native, SimdIsa, Task};
 pub use vector::V3;

@@ -61,8 +61,10 @@ impl<R: Scalar, V: SimdIsa<R>> Walk<R, V> {
             Q::on_boxes(8);
             let node = &context.bvh8.nodes[at.index()];
             let (met, near) = boxes.meet(node, hit.t);
-            let next = if Q::ANY { first(node, met, stack) } else { nearest(node, met, &near, stack) };
-            if let Some(next) = next {
+            let sorted = if Q::ANY { None } else { V::sorted(met, &near, &node.children.map(|child| child.0)) };
+            if let Some(entries) = sorted {
+                stack.put_all(&entries, met.count_ones() as usize);
+            } else if let Some(next) = if Q::ANY { first(node, met, stack) } else { nearest(node, met, &near, stack) } {
                 *at = next;
                 return true;
             }
@@ -245,6 +247,15 @@ impl Stack {
     fn put(&mut self, entry: u64) {
         self.entries[self.count & (Stack::MOST - 1)] = MaybeUninit::new(entry);
         self.count += 1;
+    }
+
+    /// Puts the first `count` entries, the last on top.
+    #[inline(always)]
+    fn put_all(&mut self, entries: &[u64; 8], count: usize) {
+        let start = self.count.min(Stack::MOST - 8);
+        let room = &mut self.entries[start..start + 8];
+        room.copy_from_slice(&entries.map(MaybeUninit::new));
+        self.count += count;
     }
 
     /// Inserts an entry below those from index `from` on that are less.

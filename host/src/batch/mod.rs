@@ -185,7 +185,8 @@ mod tests {
         // So short that no number of double precision is as large as the distance.
         let short = Ray::new(up(1.0), -DVec3::Y * 1e-310);
         let batch_of_short = Batch::new(&packed, &[short]);
-        let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch_of_short.stream(), Question::Closest).unwrap();
+        let (answers, _) =
+            cpu::cast(&packed, Method::Wide.into(), 1, batch_of_short.stream(), Question::Closest).unwrap();
         assert_eq!(batch_of_short.hits(&packed, &answers)[0].expect("the floor is below").t, f64::MAX);
         let met = [false, true, false, false, false, false];
         assert_eq!(hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(), met);

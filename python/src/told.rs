@@ -59,6 +59,7 @@ macro_rules! rows {
 }
 
 const NOWHERE: Place = Place { point: DVec3::NAN, normal: Vec3::NAN, error: f64::NAN };
+
 impl Column<'_> {
     /// Some of the rows.
     pub fn rows(&mut self, range: Range<usize>) -> Column<'_> {

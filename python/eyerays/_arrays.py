@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -95,12 +98,14 @@ def matrices(name: str, values: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
-def to_fill(out: NDArray | None, shape: tuple[int, ...], kind: type) -> NDArray:
-    """The array `out` if it can be filled with a number a ray, or a new one if there is none."""
+def to_fill(out: NDArray | None, shape: tuple[int, ...], kind: type, inputs: Iterable[Any] = ()) -> NDArray:
+    """The array `out` if it can be filled with a number a ray and is none of the inputs, or a new one if there is none."""
     if out is None:
         return np.empty(shape, kind)
     if not isinstance(out, np.ndarray) or out.dtype != kind:
         raise TypeError(f"out is no numpy array of {np.dtype(kind).name}")
     if out.shape != shape or not (out.flags.c_contiguous and out.flags.aligned and out.flags.writeable):
         raise ValueError(f"out has gaps, can't be written to or has not the shape {shape}")
+    if any(isinstance(other, np.ndarray) and np.may_share_memory(out, other) for other in inputs):
+        raise ValueError("out shares memory with other arrays of this call; give an array of its own")
     return out

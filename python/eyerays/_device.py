@@ -59,7 +59,12 @@ def host_array(name: str, values: ArrayLike) -> NDArray:
     if hasattr(values, "__dlpack__"):
         return _of_dlpack(name, values)
     interface = _interface(name, values)
-    return np.asarray(values) if interface is None else _of_cuda(name, interface)
+    if interface is not None:
+        return _of_cuda(name, interface)
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise ValueError(f"{name} is no array: {_line(error)}") from None
 
 
 def _masked(name: str) -> str:

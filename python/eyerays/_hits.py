@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +83,9 @@ class Nearest:
 NAMES = tuple(field.name for field in fields(Hits))
 """The fields' names in their order."""
 
+NEAREST = tuple(field.name for field in fields(Nearest))
+"""Those of nearest points."""
+
 SHAPES = {"t": (), "triangle": (), "object": (), "uv": (2,), "normal": (3,), "point": (3,), "error": ()}
 """What an array has beside the rays' shape."""
 
@@ -99,20 +103,30 @@ TYPES = {
 
 def names(fields: str | Iterable[str] | None, more: Iterable[str] = ()) -> list[str]:
     """The names of what is asked for, all of them if nothing is said, and more."""
-    listed = NAMES if fields is None else ((fields,) if isinstance(fields, str) else tuple(fields))
-    wanted = list(dict.fromkeys((*listed, *more)))
+    wanted = list(dict.fromkeys((*(NAMES if fields is None else _listed(fields)), *more)))
     for name in wanted:
         if name not in SHAPES:
             raise ValueError(f"a hit has no {name!r}; it has {', '.join(NAMES)}")
     return wanted
 
 
+def _listed(fields: str | Iterable[str]) -> tuple[str, ...]:
+    listed = (fields,) if isinstance(fields, str) else tuple(fields) if isinstance(fields, Iterable) else (None,)
+    if not all(isinstance(name, str) for name in listed):
+        raise TypeError(f"fields is {fields!r}; it is a name or several")
+    return listed
+
+
 def of_nearest(fields: str | Iterable[str] | None, out: Mapping[str, NDArray] | None):
     """Both as those of hits have them, whose `t` is the distance."""
-    renamed = {"distance": "t", "t": "distance"}
-    if fields is not None:
-        fields = [renamed.get(name, name) for name in ([fields] if isinstance(fields, str) else fields)]
-    return fields, {renamed.get(name, name): array for name, array in _mapping(out).items()} or None
+    given, out = None if fields is None else _listed(fields), _mapping(out)
+    for name in (*(given or ()), *out):
+        if name not in NEAREST:
+            raise ValueError(f"a nearest point has no {name!r}; it has {', '.join(NEAREST)}")
+    hits = {"distance": "t"}
+    if given is not None:
+        given = tuple(hits.get(name, name) for name in given)
+    return given, {hits.get(name, name): array for name, array in out.items()} or None
 
 
 def _mapping(out) -> dict[str, NDArray]:
@@ -121,33 +135,36 @@ def _mapping(out) -> dict[str, NDArray]:
     return {} if out is None else dict(out)
 
 
-def arrays(shape: tuple[int, ...], fields, out, inputs: Iterable[NDArray]) -> dict[str, NDArray]:
-    """The arrays to be filled: those of `out`, none of which is one of `inputs`, and new ones for what else is asked for."""
+def arrays(
+    shape: tuple[int, ...], fields, out, inputs: Iterable[NDArray], called: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, NDArray]:
+    """The arrays to be filled: those of `out`, none of which is one of `inputs`, and new ones for what else is asked for. `called` has other
+    names of theirs, for errors."""
     out = _mapping(out)
     wanted = names(tuple(out) if fields is None and out else fields, out)
     made = {
-        name: _checked(name, out[name], shape) if name in out else np.empty(shape + SHAPES[name], TYPES[name][0])
+        name: _checked(name, out[name], shape, called.get(name, name)) if name in out else np.empty(shape + SHAPES[name], TYPES[name][0])
         for name in wanted
     }
     others = list(inputs)
     for name in out:
         if any(np.may_share_memory(made[name], other) for other in others):
-            raise ValueError(f"out[{name!r}] shares memory with other arrays of this call; give an array of its own")
+            raise ValueError(f"out[{called.get(name, name)!r}] shares memory with other arrays of this call; give an array of its own")
         others.append(made[name])
     return made
 
 
-def _checked(name: str, array, shape: tuple[int, ...]) -> NDArray:
+def _checked(name: str, array, shape: tuple[int, ...], called: str) -> NDArray:
     wanted = shape + SHAPES[name]
     if not isinstance(array, np.ndarray) or isinstance(array, np.ma.MaskedArray):
-        raise TypeError(f"out[{name!r}] is no numpy array")
+        raise TypeError(f"out[{called!r}] is no numpy array")
     if array.dtype not in TYPES[name]:
         kinds = " or ".join(np.dtype(kind).name for kind in TYPES[name])
-        raise TypeError(f"out[{name!r}] holds {array.dtype}, not {kinds}")
+        raise TypeError(f"out[{called!r}] holds {array.dtype}, not {kinds}")
     if array.shape != wanted:
-        raise ValueError(f"out[{name!r}] has the shape {array.shape}, not {wanted}")
+        raise ValueError(f"out[{called!r}] has the shape {array.shape}, not {wanted}")
     if not (array.flags.c_contiguous and array.flags.aligned and array.flags.writeable):
-        raise ValueError(f"out[{name!r}] has gaps or can't be written to; give an array of its own")
+        raise ValueError(f"out[{called!r}] has gaps or can't be written to; give an array of its own")
     return array
 
 

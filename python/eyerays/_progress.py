@@ -20,6 +20,8 @@ class bar:
             return None
         if callable(self._progress):
             return self._progress
+        if self._progress is not True:
+            raise TypeError(f"progress is {self._progress!r}; it is True, None or a function of two numbers")
         try:
             from tqdm.auto import tqdm
         except ImportError:

@@ -75,7 +75,7 @@ class Queries:
         return self._any(rays, shape, device, out, progress)
 
     def _any(self, rays, shape, device, out, progress) -> NDArray[np.bool_]:
-        out = _arrays.to_fill(out, shape, np.bool_)
+        out = _arrays.to_fill(out, shape, np.bool_, rays)
         with bar(progress) as told:
             self._built().any(rays, out.reshape(-1), str(device), told)
         return out
@@ -115,7 +115,7 @@ class Queries:
     ) -> NDArray[np.int32]:
         """How many triangles each ray crosses, counted as `all_hits` does. Arguments are those of `closest`."""
         rays, shape = _rays(origins, directions, tmax)
-        out = _arrays.to_fill(out, shape, np.int32)
+        out = _arrays.to_fill(out, shape, np.int32, rays)
         with bar(progress) as told:
             self._built().count(rays, out.reshape(-1), str(device), told)
         return out
@@ -153,7 +153,7 @@ class Queries:
         rows = _arrays.rows("points", points)
         shape = rows.shape[:-1]
         renamed = _hits.of_nearest(fields, out)
-        arrays = _hits.arrays(shape, *renamed, (rows,))
+        arrays = _hits.arrays(shape, *renamed, (rows,), called={"t": "distance"})
         rows = rows.reshape(-1, 3)
         with bar(progress) as told:
             self._built().nearest(rows, _hits.native(arrays, len(rows)), str(device), told)
@@ -192,11 +192,16 @@ class Queries:
             raise ValueError(f"pairs has the shape {ends.shape}; its last axes must be two points of three numbers")
         if margin is None:
             margin = MARGIN * self._built().roundoff
-        elif not 0 <= margin < np.inf:
-            raise ValueError(f"margin is {margin}; it is zero or more")
+        elif not isinstance(margin, (int, float, np.number)) or not 0 <= margin < np.inf:
+            raise ValueError(f"margin is {margin!r}; it is a number that is zero or more")
+        if not np.isfinite(ends).all():
+            raise ValueError("pairs is not finite")
         starts = ends[..., 0, :].astype(np.float64)
-        ways = ends[..., 1, :] - starts
-        lengths = np.linalg.norm(ways, axis=-1)
+        with np.errstate(over="ignore"):
+            ways = ends[..., 1, :] - starts
+            lengths = np.linalg.norm(ways, axis=-1)
+        if not np.isfinite(lengths).all():
+            raise ValueError("pairs has points that are too far apart for their distance to be a number; choose a larger unit")
         far = lengths > 2 * margin
         # Those that are close to each other go anywhere, but no way.
         ways[lengths == 0] = INWARD

@@ -174,7 +174,7 @@ impl Surfaces {
 fn heard<'a>(
     rays: &'a RaysView<'_>,
     progress: Option<Py<PyAny>>,
-) -> impl FnMut(usize) -> std::result::Result<(), Raised> + Send + 'a {
+) -> impl FnMut(usize) -> std::result::Result<(), Raised> + 'a {
     move |done| {
         rays.check()?;
         Ok(blocks::heard(progress.as_ref(), (done, rays.count()))?)

@@ -38,6 +38,36 @@ def test_the_nearest_place_of_a_square_is_where_it_is():
     assert scene.closest_point([0, 0, 1], fields="distance").distance.shape == ()
 
 
+@pytest.mark.parametrize("far", [1e5, 1e18, 1e30, 1e200, 1e290])
+@pytest.mark.parametrize("size", [1.0, 1e-15])
+def test_far_points_are_as_far_as_they_are(far, size):
+    vertices, faces = icosphere(2)
+    scene = eyerays.Scene(vertices * size, faces)
+    distance = np.zeros(1)
+    scene.closest_point([[far, 0.0, 0.0]], out={"distance": distance})
+    assert distance[0] == pytest.approx(far - size, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("error", "said", "arguments"),
+    [
+        (ValueError, "a nearest point has no 't'; it has distance,", {"fields": "t"}),
+        (ValueError, "a nearest point has no 'hit'", {"out": {"hit": np.zeros(1)}}),
+        (ValueError, "out['distance'] has the shape (2,), not (1,)", {"out": {"distance": np.zeros(2)}}),
+    ],
+)
+def test_fields_that_nearest_points_have_not_are_refused_by_their_names(error, said, arguments):
+    with pytest.raises(error) as raised:
+        eyerays.Scene(SQUARE, HALVES).closest_point([[0.0, 0.0, 1.0]], **arguments)
+    assert said in str(raised.value)
+
+
+@pytest.mark.parametrize("pair", [[[0, 0, np.nan], [0, 0, 1]], [[0, 0, -1e308], [0, 0, 1e308]]])
+def test_pairs_without_a_distance_are_refused_by_that_name(pair):
+    with pytest.raises(ValueError, match="pairs"):
+        eyerays.Scene(SQUARE, HALVES).visibility([pair])
+
+
 @pytest.mark.parametrize("shift", [0.0, 1e6])
 def test_distances_are_those_of_every_triangle(shift):
     vertices, faces = icosphere(2)

@@ -198,6 +198,10 @@ def test_a_scene_that_is_none_is_refused_in_a_line(error, said, make):
         (TypeError, "is no numpy array", {"out": {"t": [0, 0, 0]}}),
         (TypeError, "out maps names of fields", {"out": np.zeros(3)}),
         (TypeError, "tmax holds <U1", {"tmax": "a"}),
+        (ValueError, "origins is no array", {"origins": [[0, 0, 1], [0, 0]]}),
+        (TypeError, "fields is 5; it is a name or several", {"fields": 5}),
+        (TypeError, "fields is [['t']]", {"fields": [["t"]]}),
+        (TypeError, "progress is 5", {"progress": 5}),
         (ValueError, "out['error'] shares memory", {"out": dict.fromkeys(("t", "error"), np.zeros(3, np.float32))}),
     ],
 )
@@ -347,6 +351,56 @@ def test_progress_is_told_and_what_it_raises_ends_the_work():
 
     with pytest.raises(KeyboardInterrupt):
         scene.any(rays, -UP, progress=stop)
+
+
+def test_an_interrupt_ends_the_work_and_is_heard_by_the_thread_that_asks():
+    scene = eyerays.Scene(SQUARE, HALVES)
+    rays = np.broadcast_to(np.float32([0.5, -0.5, 2.0]), (40_000_000, 3))
+    told = []
+
+    def interrupt(done, count):
+        told.append(threading.get_ident())
+        signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        scene.any(rays, -UP, progress=interrupt)
+    assert told == [threading.get_ident()]
+    out = np.zeros(len(rays), bool)
+    timer = threading.Timer(0.1, signal.raise_signal, (signal.SIGINT,))
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        scene.any(rays, -UP, out=out)
+    assert not out[-1], "the work went on to its end"
+
+
+def test_scenes_may_ask_each_other_while_they_tell_of_progress():
+    """Each has one thread of its own, which must not wait for the other's."""
+    one, other = (eyerays.Scene(SQUARE, HALVES, threads=1) for _ in range(2))
+    rays = np.broadcast_to(np.float32([0.5, -0.5, 2.0]), (3_000_000, 3))
+
+    def ask():
+        assert one.any(rays, -UP, progress=lambda *_: other.any(rays[:1000], -UP)).all()
+
+    threads = [threading.Thread(target=ask, daemon=True) for _ in range(3)]
+    [thread.start() for thread in threads]
+    [thread.join(60) for thread in threads]
+    assert not any(thread.is_alive() for thread in threads)
+
+
+def test_outputs_are_no_inputs():
+    scene = eyerays.Scene(SQUARE, HALVES)
+    memory = np.zeros(9, np.float32)
+    origins = memory.reshape(3, 3)
+    for ask, kind in ((scene.any, bool), (scene.count, np.int32)):
+        with pytest.raises(ValueError, match="out shares memory"):
+            ask(origins, UP, out=memory.view(kind)[:3])
+
+
+def test_a_limit_counts_where_products_of_it_are_no_numbers():
+    vertices, faces = icosphere(1)
+    scene = eyerays.Scene(vertices * 1e-10, faces)
+    met = scene.any([0, 0, -1], [0, 0, 1e-300], tmax=5e299)
+    assert not met and scene.any([0, 0, -1], [0, 0, 1e-300], tmax=2e300)
 
 
 def test_memory_does_not_grow():

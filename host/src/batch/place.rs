@@ -161,7 +161,8 @@ impl Columns {
 fn placed(normalisation: &Normalisation, ray: &Ray) -> (StreamRay, Measure) {
     let (direction, (binade, over)) = grown(ray.direction);
     let (scale, origin) = (normalisation.scale, normalisation.exactly(ray.origin));
-    let limit = ray.tmax * scale * binade;
+    // The length in the scene's units first, which is the one that may be a number where others are not.
+    let limit = ray.tmax * binade * scale;
     let (comes, enters) = entry(origin, direction);
     let comes = comes & (limit >= enters);
     let origin = origin + direction * enters;

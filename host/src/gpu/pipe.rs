@@ -18,7 +18,7 @@ use crate::method::Traversal;
 use crate::stream::Question;
 
 /// Rays of a chunk.
-const CHUNK: usize = 1 << 18;
+const CHUNK: usize = 1 << 19;
 /// Rays that a thread packs at once, whose records are in its nearest cache. Chunks are filled up to whole pieces by rays that meet nothing.
 const PIECE: usize = 1 << 8;
 /// Pieces that are worth a thread.
@@ -64,51 +64,45 @@ pub(crate) struct Chunk<'a> {
 }
 
 /// Who is told of chunks.
-pub(crate) type Tell<'t, E> = dyn FnMut(Chunk<'_>) -> std::result::Result<(), E> + Send + 't;
+pub(crate) type Tell<'t> = dyn FnMut(Chunk<'_>) + Send + 't;
 
 impl Caster {
-    /// Answers a question of `count` rays, told of in their order.
+    /// Answers a question of `count` rays, told of in their order by `threads`; who hears how many are is called by the thread that asks.
     ///
     /// # Errors
-    /// What the GPU reports, or who is told.
-    pub(crate) fn ask<E: From<Error> + Send>(
+    /// What the GPU reports, or who hears.
+    pub(crate) fn ask<E: From<Error>>(
         &self,
         question: Question,
         (count, rays): (usize, &impl Rays),
-        tell: &mut Tell<'_, E>,
+        threads: &rayon::ThreadPool,
+        tell: &mut Tell<'_>,
+        heard: &mut dyn FnMut(usize) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let asking = self.asking(question)?;
         let mut free = self.lanes(count)?;
         let (mut written, mut sent): (Option<Lane>, VecDeque<Lane>) = (None, VecDeque::new());
         for start in (0..count).step_by(CHUNK) {
             let mut lane = free.pop().expect("a lane is told of before the next is written");
+            let write = || self.write(&mut lane, start..count.min(start + CHUNK), rays);
+            let others = || {
+                sent.extend(written.take().map(|lane| self.sent(&asking, lane)));
+                let oldest = if free.is_empty() { sent.pop_front() } else { None };
+                oldest.map(|lane| self.received(&asking, lane, tell)).transpose()
+            };
             // While the rays of a chunk are written, those before it are sent, and others told of.
-            let (write, others) = rayon::join(
-                || self.write(&mut lane, start..count.min(start + CHUNK), rays),
-                || -> std::result::Result<(), E> {
-                    if let Some(mut lane) = written.take() {
-                        self.send(&asking, &mut lane);
-                        sent.push_back(lane);
-                    }
-                    if free.is_empty()
-                        && let Some(mut lane) = sent.pop_front()
-                    {
-                        self.receive(&asking, &mut lane, tell)?;
-                        free.push(lane);
-                    }
-                    Ok(())
-                },
-            );
-            write?;
-            others?;
+            let (is_written, received) = threads.install(|| rayon::join(write, others));
+            is_written?;
+            if let Some(lane) = received? {
+                heard(lane.rays.end)?;
+                free.push(lane);
+            }
             written = Some(lane);
         }
-        if let Some(mut lane) = written {
-            self.send(&asking, &mut lane);
-            sent.push_back(lane);
-        }
-        for mut lane in sent {
-            self.receive(&asking, &mut lane, tell)?;
+        sent.extend(written.map(|lane| self.sent(&asking, lane)));
+        for lane in sent {
+            let lane = threads.install(|| self.received(&asking, lane, tell))?;
+            heard(lane.rays.end)?;
             free.push(lane);
         }
         // Of a call that fails they are thrown away, with what is on its way.
@@ -155,8 +149,8 @@ impl Caster {
         Ok(Lane { cast, upload, back, measures, groups: HashMap::new(), rays: 0..0, row: 0, sent: None })
     }
 
-    /// Asks the GPU what was written.
-    fn send(&self, asking: &Asking, lane: &mut Lane) {
+    /// A lane whose rays the GPU is asked.
+    fn sent(&self, asking: &Asking, mut lane: Lane) -> Lane {
         let (gpu, row) = (&self.gpu, lane.row);
         if lane.cast.count as usize != row {
             let frame = self.packed.stream_frame(row);
@@ -170,6 +164,7 @@ impl Caster {
         lane.cast.dispatch(&mut encoder, (&asking.kernel, group), None);
         lane.back.copy(&mut encoder, lane.cast.buffers.of(asking.binding), 0, asking.bytes * row as u64);
         lane.sent = Some(gpu.queue.submit([encoder.finish()]));
+        lane
     }
 
     /// Writes the records of rays, all first ones before all second ones.
@@ -198,20 +193,16 @@ impl Caster {
         Ok(())
     }
 
-    /// Waits for what a lane has sent, and tells of it.
-    fn receive<E: From<Error>>(
-        &self,
-        asking: &Asking,
-        lane: &mut Lane,
-        tell: &mut Tell<'_, E>,
-    ) -> std::result::Result<(), E> {
-        let Lane { upload, back, measures, rays, row, sent, .. } = lane;
-        let Some(submission) = sent.take() else { return Ok(()) };
-        let (rays, row) = (rays.clone(), *row);
-        // The GPU is done with it then, too.
-        upload.map_async(wgpu::MapMode::Write, .., |_| {});
-        back.receive(&self.gpu, submission, asking.bytes * row as u64, |bytes| {
-            tell(Chunk { rays, measures, bytes, row })
-        })?
+    /// A lane that was waited for, and told of.
+    fn received(&self, asking: &Asking, mut lane: Lane, tell: &mut Tell<'_>) -> Result<Lane> {
+        let Lane { upload, back, measures, rays, row, sent, .. } = &mut lane;
+        if let Some(submission) = sent.take() {
+            let (rays, row) = (rays.clone(), *row);
+            // The GPU is done with it then, too.
+            upload.map_async(wgpu::MapMode::Write, .., |_| {});
+            let size = asking.bytes * row as u64;
+            back.receive(&self.gpu, submission, size, |bytes| tell(Chunk { rays, measures, bytes, row }))?;
+        }
+        Ok(lane)
     }
 }

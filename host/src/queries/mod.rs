@@ -57,8 +57,8 @@ pub struct Queries {
 /// megabytes at most.
 const MOST_RAYS: usize = 1 << 20;
 
-/// Who hears how many rays are answered, and may end it by an error.
-pub type Heard<'h, E> = dyn FnMut(usize) -> std::result::Result<(), E> + Send + 'h;
+/// Who hears how many rays are answered, in the thread that asks, and may end it by an error.
+pub type Heard<'h, E> = dyn FnMut(usize) -> std::result::Result<(), E> + 'h;
 
 impl Queries {
     /// Of all surfaces of a scene, whatever they are made of and whoever sees them, on the CPU, with `threads` threads (0: one a core).
@@ -101,7 +101,7 @@ impl Queries {
     ///
     /// # Errors
     /// What a GPU reports, or who hears.
-    pub fn closest_into<E: From<Error> + Send>(
+    pub fn closest_into<E: From<Error>>(
         &self,
         count: usize,
         rays: &impl Rays,
@@ -119,10 +119,10 @@ impl Queries {
                 hits.iter_mut().zip(both).for_each(|(hit, (measure, found))| *hit = surfaces.hit(measure, found));
             });
         };
-        surfaces.threads.install(|| match self.gpu(count) {
-            Some(caster) => on_gpu((caster, Question::Closest), (count, rays), tell, sink, heard),
+        match self.gpu(count) {
+            Some(caster) => on_gpu(surfaces, (caster, Question::Closest), (count, rays), tell, sink, heard),
             None => on_cpu(surfaces, (count, rays), (None, ask), sink, heard),
-        })
+        }
     }
 
     /// The object of a hit by its place in [`Scene::objects`](crate::scene::Scene::objects), and which of the object's primitives it is. A scene
@@ -155,7 +155,7 @@ impl Queries {
     ///
     /// # Errors
     /// As [`Queries::closest_into`].
-    pub fn any_into<E: From<Error> + Send>(
+    pub fn any_into<E: From<Error>>(
         &self,
         count: usize,
         rays: &impl Rays,
@@ -171,10 +171,10 @@ impl Queries {
                 met.iter_mut().zip(shadows).for_each(|(met, &shadow)| *met = shadow == SHADOWED);
             });
         };
-        self.surfaces.threads.install(|| match self.gpu(count) {
-            Some(caster) => on_gpu((caster, Question::Occlusion), (count, rays), tell, sink, heard),
+        match self.gpu(count) {
+            Some(caster) => on_gpu(&self.surfaces, (caster, Question::Occlusion), (count, rays), tell, sink, heard),
             None => on_cpu(&self.surfaces, (count, rays), (false, ask), sink, heard),
-        })
+        }
     }
 
     /// All triangles that each of some rays crosses before its end, the nearest first; of several that are equally far, those of lower

@@ -43,24 +43,35 @@ fn told(surfaces: &Surfaces, point: DVec3, found: &Found<f32>) -> Option<(Hit, P
     let primitive = surfaces.primitive(slot)?;
     let double = |p: DVec3| V3::<f64>::new(p.x, p.y, p.z);
     let [a, b, c] = primitive.vertices().map(Vec3::as_dvec3);
-    let near = geometry::nearest(double(a), double(b), double(c), double(point));
+    let near = geometry::nearest(double(a), double(b), double(c), double(seen(point)));
     let (normalisation, (v, w)) = (surfaces.job.normalisation(), near.weights);
     let coordinates = [v as f32, w as f32];
-    let t = near.square.sqrt() / normalisation.scale;
+    let at = a + (b - a) * v + (c - a) * w;
+    let t = length(at - point) / normalisation.scale;
     let place = Place {
-        point: normalisation.inverse().transform_point3(a + (b - a) * v + (c - a) * w),
+        point: normalisation.inverse().transform_point3(at),
         error: LOST * (point.abs().max_element() + 2.0) / normalisation.scale,
         ..surfaces.place_on(&primitive, coordinates)
     };
     Some((Hit { t, primitive: primitive.number(), coordinates, slot }, place))
 }
 
+/// From where a far point sees the triangles as it does, but for rounding.
+fn seen(point: DVec3) -> DVec3 {
+    let far = point.abs().max_element() / f64::from(FARTHEST);
+    if far > 1.0 { point / far } else { point }
+}
+
+/// A vector's length, whose square may be no number.
+fn length(of: DVec3) -> f64 {
+    let size = of.abs().max_element();
+    if size == 0.0 { 0.0 } else { (of / size).length() * size }
+}
+
 /// A point as the origin of a ray, as kernels take it.
 fn placed(point: DVec3) -> StreamRay {
-    let far = point.abs().max_element() / f64::from(FARTHEST);
-    let origin = if far > 1.0 { point / far } else { point };
     // Nothing is nearer than that.
     let limit = if point.is_finite() { f32::MAX } else { -1.0 };
-    let origin = if point.is_finite() { flushed(origin.as_vec3()) } else { Vec3::ZERO };
+    let origin = if point.is_finite() { flushed(seen(point).as_vec3()) } else { Vec3::ZERO };
     StreamRay { origin, direction: Vec3::X, limit, source_primitive: StreamRay::NOWHERE }
 }

@@ -18,7 +18,7 @@ pub(super) trait Ask<T, R>: Fn(&Follower, &Ordered<'_, R>, Range<usize>, &mut [T
 
 impl<T, R, F: Fn(&Follower, &Ordered<'_, R>, Range<usize>, &mut [T]) + Sync> Ask<T, R> for F {}
 
-/// Answers all rays, with the threads that it is called in; `nothing` is the answer of a ray that is not asked yet.
+/// Answers all rays by the surfaces' threads; `nothing` is the answer of a ray that is not asked yet.
 pub(super) fn on_cpu<T: Copy + Send + Sync, R: Rays, E>(
     surfaces: &Surfaces,
     (count, rays): (usize, &R),
@@ -32,11 +32,11 @@ pub(super) fn on_cpu<T: Copy + Send + Sync, R: Rays, E>(
         let sink = parts.next(block.len());
         let job = &surfaces.job;
         let scene = (job.primitives().len(), job.normalisation().scale);
-        match Order::of(rays, block.clone(), scene) {
+        surfaces.threads.install(|| match Order::of(rays, block.clone(), scene) {
             Order::Neighbours => in_turn(surfaces, Method::Packet, (rays, &block), (nothing, &ask), sink),
             Order::None => in_turn(surfaces, Method::Wide, (rays, &block), (nothing, &ask), sink),
             Order::Sorted(most) => sorted(surfaces, (most, &mut room), (rays, &block), (nothing, &ask), sink),
-        }
+        });
         heard(block.end)?;
     }
     Ok(())

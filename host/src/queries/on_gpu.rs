@@ -4,13 +4,15 @@ use std::ops::Range;
 
 use super::Heard;
 use super::sink::{Parts, Sink, divided};
+use super::surfaces::Surfaces;
 use crate::batch::Rays;
 use crate::error::Error;
 use crate::gpu::{Caster, Chunk};
 use crate::stream::Question;
 
-/// Answers all rays, told of by the threads that it is called in: each tells of some rays of a chunk.
-pub(super) fn on_gpu<T, E: From<Error> + Send>(
+/// Answers all rays, told of by the surfaces' threads: each tells of some rays of a chunk.
+pub(super) fn on_gpu<T, E: From<Error>>(
+    surfaces: &Surfaces,
     (caster, question): (&Caster, Question),
     (count, rays): (usize, &impl Rays),
     tell: impl Fn(&Chunk<'_>, Range<usize>) -> Vec<T> + Sync,
@@ -18,9 +20,9 @@ pub(super) fn on_gpu<T, E: From<Error> + Send>(
     heard: &mut Heard<'_, E>,
 ) -> Result<(), E> {
     let mut parts = Parts::of(sink);
-    caster.ask(question, (count, rays), &mut |chunk| {
+    let mut all = |chunk: Chunk<'_>| {
         let rays = chunk.rays.len();
         divided(0..rays, parts.next(rays), &|rays, sink| sink.take(&tell(&chunk, rays)));
-        heard(chunk.rays.end)
-    })
+    };
+    caster.ask(question, (count, rays), &surfaces.threads, &mut all, heard)
 }

@@ -17,8 +17,8 @@ use crate::error::{Error, Result};
 use crate::method::Traversal;
 use crate::stream::Question;
 
-/// Rays of a chunk.
-const CHUNK: usize = 1 << 19;
+/// The fewest and the most rays of a chunk: enough for a GPU and for the threads that write them, and no more than caches hold of them.
+const CHUNK: (usize, usize) = (1 << 16, 1 << 19);
 /// Rays that a thread packs at once, whose records are in its nearest cache. Chunks are filled up to whole pieces by rays that meet nothing.
 const PIECE: usize = 1 << 8;
 /// Pieces that are worth a thread.
@@ -80,11 +80,13 @@ impl Caster {
         heard: &mut dyn FnMut(usize) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let asking = self.asking(question)?;
-        let mut free = self.lanes(count)?;
+        // All lanes have one, if there are rays for that.
+        let chunk = count.div_ceil(LANES).next_multiple_of(PIECE).clamp(CHUNK.0, CHUNK.1);
+        let mut free = self.lanes(count, chunk)?;
         let (mut written, mut sent): (Option<Lane>, VecDeque<Lane>) = (None, VecDeque::new());
-        for start in (0..count).step_by(CHUNK) {
+        for start in (0..count).step_by(chunk) {
             let mut lane = free.pop().expect("a lane is told of before the next is written");
-            let write = || self.write(&mut lane, start..count.min(start + CHUNK), rays);
+            let write = || self.write(&mut lane, start..count.min(start + chunk), rays);
             let others = || {
                 sent.extend(written.take().map(|lane| self.sent(&asking, lane)));
                 let oldest = if free.is_empty() { sent.pop_front() } else { None };
@@ -119,9 +121,9 @@ impl Caster {
         Ok(Asking { question, kernel, binding, bytes })
     }
 
-    /// As many lanes as so many rays fill.
-    fn lanes(&self, count: usize) -> Result<Vec<Lane>> {
-        let (wanted, most) = (count.div_ceil(CHUNK).min(LANES), count.min(CHUNK).next_multiple_of(PIECE));
+    /// As many lanes as so many rays fill, a chunk each.
+    fn lanes(&self, count: usize, chunk: usize) -> Result<Vec<Lane>> {
+        let (wanted, most) = (count.div_ceil(chunk).min(LANES), count.min(chunk).next_multiple_of(PIECE));
         let mut lanes: Vec<Lane> = {
             let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
             idle.retain(|lane| lane.measures.len() >= most);

@@ -104,7 +104,8 @@ def _of_dlpack(name: str, values: Any) -> NDArray:
     except Exception as error:
         refusal = error
     interface = None if on_host else _interface(name, values)
-    if interface is not None:
+    # Nor does this have that sign.
+    if interface is not None and not (hasattr(values, "is_neg") and values.is_neg()):
         return _of_cuda(name, interface)
     if hasattr(values, "__array__"):
         try:

@@ -197,9 +197,11 @@ class Queries:
         if not np.isfinite(ends).all():
             raise ValueError("pairs is not finite")
         starts = ends[..., 0, :].astype(np.float64)
-        with np.errstate(over="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):
             ways = ends[..., 1, :] - starts
-            lengths = np.linalg.norm(ways, axis=-1)
+            # By their largest number, whose square may be none.
+            largest = np.abs(ways).max(axis=-1)
+            lengths = largest * np.linalg.norm(ways / np.where(largest > 0, largest, 1)[..., None], axis=-1)
         if not np.isfinite(lengths).all():
             raise ValueError("pairs has points that are too far apart for their distance to be a number; choose a larger unit")
         far = lengths > 2 * margin

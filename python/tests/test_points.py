@@ -68,6 +68,15 @@ def test_pairs_without_a_distance_are_refused_by_that_name(pair):
         eyerays.Scene(SQUARE, HALVES).visibility([pair])
 
 
+def test_points_that_are_far_from_each_other_see_each_other():
+    scene = eyerays.Scene(SQUARE, HALVES)
+    pairs = np.array([[[0.5, -0.5, -1.0], [0.5, -0.5, 1.0]], [[3.0, 0.0, -1.0], [3.0, 0.0, 1.0]]])
+    for far in (1.0, 1e6):
+        assert scene.visibility(pairs * [1.0, 1.0, far]).tolist() == [False, True]
+    # So far that the square of their distance is no number.
+    assert scene.visibility(pairs[1] * [1.0, 1.0, 1e200])
+
+
 @pytest.mark.parametrize("shift", [0.0, 1e6])
 def test_distances_are_those_of_every_triangle(shift):
     vertices, faces = icosphere(2)

@@ -6,6 +6,7 @@ import pickle
 import signal
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -366,10 +367,15 @@ def test_an_interrupt_ends_the_work_and_is_heard_by_the_thread_that_asks():
         scene.any(rays, -UP, progress=interrupt)
     assert told == [threading.get_ident()]
     out = np.zeros(len(rays), bool)
-    timer = threading.Timer(0.1, signal.raise_signal, (signal.SIGINT,))
+
+    def interrupt_the_first_block():
+        while not out[0]:
+            time.sleep(1e-4)
+        signal.raise_signal(signal.SIGINT)
+
     with pytest.raises(KeyboardInterrupt):
-        timer.start()
-        scene.any(rays, -UP, out=out)
+        threading.Thread(target=interrupt_the_first_block, daemon=True).start()
+        scene.any(rays, -UP, out=out, device="cpu")
     assert not out[-1], "the work went on to its end"
 
 
@@ -378,13 +384,16 @@ def test_scenes_may_ask_each_other_while_they_tell_of_progress():
     one, other = (eyerays.Scene(SQUARE, HALVES, threads=1) for _ in range(2))
     rays = np.broadcast_to(np.float32([0.5, -0.5, 2.0]), (3_000_000, 3))
 
-    def ask():
-        assert one.any(rays, -UP, progress=lambda *_: other.any(rays[:1000], -UP)).all()
+    answers = []
 
-    threads = [threading.Thread(target=ask, daemon=True) for _ in range(3)]
+    def ask(of, beside):
+        answers.append(of.any(rays, -UP, progress=lambda *_: beside.any(rays[:1000], -UP)).all())
+
+    pairs = [(one, other), (other, one), (one, other), (other, one)]
+    threads = [threading.Thread(target=ask, args=pair, daemon=True) for pair in pairs]
     [thread.start() for thread in threads]
     [thread.join(60) for thread in threads]
-    assert not any(thread.is_alive() for thread in threads)
+    assert answers == [True] * len(pairs)
 
 
 def test_outputs_are_no_inputs():

@@ -263,7 +263,7 @@ mod tests {
                 let (mut firsts, mut seconds) = (vec![UVec4::ZERO; room], vec![UVec4::ZERO; room]);
                 let mut measures = vec![Measure::default(); room];
                 let to = Placed { firsts: &mut firsts, seconds: &mut seconds, measures: &mut measures };
-                place_by(isa, &normalisation, &|i: usize| rays[i], 0..rays.len(), to);
+                place_by(isa, &normalisation, &|i: usize| rays[i - 5], 5..rays.len() + 5, to);
                 for i in 0..room {
                     let away = || (StreamRay::AWAY, Measure::default());
                     let (ray, measure) = rays.get(i).map_or_else(away, |ray| placed(&normalisation, ray));

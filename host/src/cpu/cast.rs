@@ -126,14 +126,14 @@ impl Follower {
     }
 }
 
-/// The next crossings of some rays of a stream, each past the one that is told of it, likewise.
+/// The next crossings of some rays of a stream, each past the one that is told of it, with the threads that it is called in.
 pub(crate) fn cross_here(packed: &Job, stream: &Stream, slots: &[u32], found: &mut [Found<f32>]) {
     let (laid, frame) = (SceneView::new(packed, Method::WhileWhile.into()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     tasks(slots, found, |slots, found| f32::cross(&geometry, slots, stream.words(), found));
 }
 
-/// What is nearest to where the rays of a stream start, likewise.
+/// What is nearest to where the rays of a stream start, with the threads that it is called in.
 pub(crate) fn nearest_here(packed: &Job, stream: &Stream) -> Vec<Found<f32>> {
     let (laid, frame) = (SceneView::new(packed, Method::WhileWhile.into()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);

@@ -35,7 +35,7 @@ pub(super) struct Lane {
     back: Readback,
     measures: Vec<Measure>,
     groups: HashMap<Question, wgpu::BindGroup>,
-    /// What is in it: rays, and as many that the GPU has.
+    /// The rays that were written, and how many records there are of them, with those that fill the last piece.
     rays: Range<usize>,
     row: usize,
     /// What is on its way.
@@ -108,7 +108,9 @@ impl Caster {
             free.push(lane);
         }
         // Of a call that fails they are thrown away, with what is on its way.
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(free);
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        idle.extend(free);
+        idle.truncate(LANES);
         Ok(())
     }
 

@@ -53,8 +53,7 @@ pub struct Queries {
     caster: Option<Arc<Caster>>,
 }
 
-/// Rays that are followed at once: enough for all of a GPU, and for neighbours that share what a CPU has in its caches, in some hundred
-/// megabytes at most.
+/// Rays that a CPU follows before it is heard of them: enough for all of its threads, in some hundred megabytes at most.
 const MOST_RAYS: usize = 1 << 20;
 
 /// Who hears how many rays are answered, in the thread that asks, and may end it by an error.
@@ -82,7 +81,7 @@ impl Queries {
         Ok(Queries { surfaces: self.surfaces.clone(), caster: Some(Arc::new(caster)) })
     }
 
-    /// The most rays that are worth asking for at once.
+    /// The most rays, or points, that are worth giving to [`Queries::crossings`] or [`Queries::nearest`] at once.
     pub fn most_rays(&self) -> usize {
         MOST_RAYS
     }
@@ -97,10 +96,13 @@ impl Queries {
         Ok(hits)
     }
 
-    /// The same, told to a sink.
+    /// The same, told to a sink, which has a part for each ray. Of a call that fails it has some answers.
     ///
     /// # Errors
     /// What a GPU reports, or who hears.
+    ///
+    /// # Panics
+    /// If a slice is the sink and has another length.
     pub fn closest_into<E: From<Error>>(
         &self,
         count: usize,
@@ -131,7 +133,7 @@ impl Queries {
         self.surfaces.surface(hit)
     }
 
-    /// Where a hit of these surfaces is.
+    /// Where a hit is that these surfaces have told, or others of the same scene and quality: others' records lie elsewhere.
     pub fn place(&self, hit: &Hit) -> Option<Place> {
         self.surfaces.place(hit)
     }
@@ -155,6 +157,9 @@ impl Queries {
     ///
     /// # Errors
     /// As [`Queries::closest_into`].
+    ///
+    /// # Panics
+    /// As that.
     pub fn any_into<E: From<Error>>(
         &self,
         count: usize,
@@ -177,7 +182,7 @@ impl Queries {
         }
     }
 
-    /// All triangles that each of some rays crosses before its end, the nearest first; of several that are equally far, those of lower
+    /// All triangles that each ray of a range crosses before its end, the nearest first; of several that are equally far, those of lower
     /// numbers first. A ray through an edge or a vertex crosses one of the triangles there where the surface goes through it, and two or
     /// none where it is only touched, so that it crosses a closed mesh an even number of times from outside. Spheres and disks are crossed by none.
     ///

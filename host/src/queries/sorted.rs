@@ -41,6 +41,7 @@ impl<R: Rays> Task<f32> for Coding<'_, R> {
         let mut made = RayBlock::default();
         for (number, keys) in self.keys.chunks_mut(BLOCK).enumerate() {
             let first = self.first + BLOCK * number;
+            // Not ray by ray: whoever gives them may look in a block for such that are none.
             self.rays.fill(self.start + first..self.start + first + keys.len(), &mut made);
             for (row, key) in keys.iter_mut().enumerate() {
                 *key = u64::from(code(made.ray(row).direction)) << 32 | (first + row) as u64;

@@ -4,6 +4,7 @@ mod place;
 
 use std::ops::Range;
 
+use eyerays_shader::stage::Found;
 use glam::{DVec3, UVec4};
 use rayon::prelude::*;
 
@@ -77,6 +78,17 @@ impl Measure {
     }
 }
 
+impl Hit {
+    /// What a kernel has found on a primitive whose record has this number: that in its mesh where it is in a copy of one.
+    #[inline]
+    pub(crate) fn of(packed: &Job, number: u32, measure: &Measure, found: &Found<f32>) -> Hit {
+        let Found { coordinates: (u, v), index, instance, .. } = *found;
+        let copy = packed.instances().get(instance as usize);
+        let primitive = copy.map_or(number, |copy| copy.number(number));
+        Hit { t: measure.t(found.t), primitive, coordinates: [u, v], slot: (index, instance) }
+    }
+}
+
 impl PartialEq for Hit {
     fn eq(&self, other: &Hit) -> bool {
         (self.t, self.primitive, self.coordinates) == (other.t, other.primitive, other.coordinates)
@@ -134,11 +146,7 @@ impl Batch {
     fn hit(&self, packed: &Job, answers: &Answers, ray: usize) -> Option<Hit> {
         let found = answers.found(ray, self.measures.len())?;
         let number = packed.primitives().get(found.index as usize)?.number();
-        let copy = packed.instances().get(found.instance as usize);
-        let primitive = copy.map_or(number, |copy| copy.number(number));
-        let (u, v) = found.coordinates;
-        let slot = (found.index, found.instance);
-        Some(Hit { t: self.measure(ray).t(found.t), primitive, coordinates: [u, v], slot })
+        Some(Hit::of(packed, number, self.measure(ray), &found))
     }
 }
 

@@ -34,11 +34,8 @@ impl Surfaces {
     /// What is told of something that was found, if it is anything.
     #[inline]
     pub fn hit(&self, measure: &Measure, found: &Found<f32>) -> Option<Hit> {
-        let Found { coordinates: (u, v), index, instance, .. } = *found;
-        let number = *self.numbers.get(index as usize)?;
-        let copy = self.job.instances().get(instance as usize);
-        let primitive = copy.map_or(number, |copy| copy.number(number));
-        Some(Hit { t: measure.t(found.t), primitive, coordinates: [u, v], slot: (index, instance) })
+        let number = *self.numbers.get(found.index as usize)?;
+        Some(Hit::of(&self.job, number, measure, found))
     }
 
     /// See [`Queries::surface`](super::Queries::surface).
